@@ -25,8 +25,7 @@ COMMON: Mapping[str, object] = {
     "scene.rppm.radius_scale": 10.0,
     "scene.rppm.radius_maximum": 0.0,
     "scene.rppm.use_adaptive_radius": True,
-    "scene.rppm.max_camera_bounces": 7,
-    "scene.rppm.max_photon_bounces": 7,
+    "scene.rppm.max_bounces": 32,
     "scene.rppm.direct_light": "RAYS",
     "scene.rppm.use_final_gather": True,
     "scene.rppm.filter_width": 1.5,
@@ -97,13 +96,9 @@ _PAIRS = (
         "8 samples. No photon reaches farther than the maximum, however large the pixels are there.", zoom=_CAUSTICS,
     ),
     Pair(
-        "scene.rppm.max_camera_bounces", (0, 2, 7), ("0", "2", "7"),
-        "Glass and mirrors are black without bounces; two pass through one body of glass, not through two.",
-    ),
-    Pair(
-        "scene.rppm.max_photon_bounces", (0, 2, 7), ("0", "2", "7"),
-        "Without bounces there are no caustics, and light between the walls comes from one of them at most. Two bring "
-        "caustics through one body of glass, seven those through several.",
+        "scene.rppm.max_bounces", (0, 2, 32), ("0", "2", "32"),
+        "Without bounces there is direct light only, and glass and mirrors show nothing but what shines. Two bring "
+        "caustics through one body of glass, and light from wall to wall twice.",
     ),
     Pair(
         "scene.rppm.specular_roughness", (0.05, 0.5), ("0.05", "0.5"),

@@ -116,6 +116,26 @@ class GrowingBuffer:
         """Make sure of so many items; returns and raises as require does."""
         return self.require(self._header_size + self.item_size * count)
 
+    def extend_items(self, count: int) -> None:
+        """Make sure of so many items, as require_items does, and keep what the buffer holds."""
+        size = self._header_size + self.item_size * count
+        if size <= self.size:
+            return
+        before, had, was_large = self._buffer, self._size, self._is_large
+        self._buffer, self._size, self._is_large = None, 0, False
+        try:
+            # Some more, lest it grow with every iteration.
+            self.require(max(size, min(had + had // 4, self.limit)))
+        except DeviceError:
+            self.release()
+            self._buffer, self._size, self._is_large = before, had, was_large
+            raise
+        if before is not None:
+            self._context.moderngl.copy_buffer(self.buffer, before, had)
+            release_textures(self._context, before)
+            before.release()
+            self._context.large_buffers -= was_large
+
     def require(self, size: int) -> bool:
         """Make sure of so many bytes; True when the buffer was made anew and its contents are gone.
 

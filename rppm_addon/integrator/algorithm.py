@@ -25,8 +25,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons, iteration)
         yield
-        for segment in range(context.settings.camera_path_length):  # TraceImportons
-            if segment > 0 and not importons.trace(context):
+        for segment in range(context.settings.camera_segments):  # TraceImportons
+            if segment > 0 and not importons.trace(context, segment):
                 break
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
@@ -69,8 +69,8 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
     photons = stages.photons
     photons.emit(context, iteration)
     stages.media.enter_photons(context, photons, iteration)
-    for segment in range(photons.segments):
-        if segment > 0 and not photons.trace(context):
+    for segment in range(context.settings.photon_segments):
+        if segment > 0 and not photons.trace(context, segment):
             break
         photons.resolve(context, iteration, segment)
         photons.scatter(context, stages.subsurface, iteration, segment)

@@ -109,11 +109,11 @@ class Learning:
         """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band. Those of
         the first say how many later ones have, as far as lights differ in what they are good for."""
         with context.timers.stage("learning"):
-            context.lights.tally(photons.photons.buffer, photons.segments)
+            context.lights.tally(photons.stored_blocks, photons.slots)
             light_count = len(context.lights.table)
             if iteration.number == 1 and self._automatic and self._by_ray and listed.count and light_count > 1:
                 lights = context.lights.buffers["Lights"]
-                by_light = listed.by_light(photons.photons.buffer, lights, light_count, photons.photon_count)
+                by_light = listed.by_light(photons.photons.buffer, lights, light_count)
                 self._count_later_photons(*photons_of_use(by_light))
             self.diffused_photons_found = None
             if photons_taken:

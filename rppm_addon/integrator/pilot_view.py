@@ -107,7 +107,7 @@ def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int
     distances[followed] = rays["maximum_distance"][followed]
     rays["maximum_distance"] = distances
     importons.rays.write(rays)
-    importons.trace(context)
+    importons.trace(context, 1)
     leaves = importons.hits.read(HIT.dtype, pixels)["triangle"][followed] == NO_TRIANGLE
     starts, directions = (rays[name][followed].astype(np.float64) for name in ("origin", "direction"))
     return np.stack([leaves, leaves & ~passes_portal(context.lights.portals.records, starts, directions)], -1)

@@ -204,7 +204,7 @@ class ProgressivePhotonMapper:
     def memory(self) -> Memory:
         """Bytes on the device by group of buffers; before the first iteration lists of photons are short."""
         groups = self.device_scene.memory_bytes | self.stages.memory_groups
-        segments = self.scene.settings.photon_path_length
+        segments = self.scene.settings.photon_bounces + 1
         return compute_memory(groups, self.film.width * self.film.height, self.scene.photon_count, segments)
 
     @property

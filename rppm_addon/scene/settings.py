@@ -30,8 +30,12 @@ nothing is hit; entries read."""
 MOST_PHOTONS = 1 << 22
 _FEWEST_AUTOMATIC_PHOTONS, _MOST_AUTOMATIC_PHOTONS = 1 << 13, 1 << 18
 """Fewer take next to no less time; more take longer than one waits for an iteration where there is no GPU."""
-_MOST_AUTOMATIC_SEGMENTS = 1 << 21
-"""Photon records that take 128 MiB, the largest buffer that all drivers have."""
+_MOST_BOUNCES = 1024
+MOST_SEGMENTS = 1024
+"""Rays of a path, whatever the limits: as many as a photon's record can tell apart."""
+_MOST_PASSED = 32
+"""Segments of a path that lead through what is not there for it, such as objects hidden from the camera, and which no
+limit counts."""
 
 
 class DirectLight(enum.Enum):
@@ -154,29 +158,47 @@ class RenderSettings:
         step=1024,
     )
     """In each iteration; automatic: photons_for."""
-    camera_path_length: int = setting(
+    max_bounces: int = setting(
+        32,
+        "Max Bounces",
+        "Most bounces of light on its way from what it lights first to the camera, as Cycles counts them: those of "
+        "photons, of the final gather and of camera rays together. 0 is direct light only",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    transparent_max_bounces: int = setting(
         8,
+        "Transparent Max Bounces",
+        "Most transparent surfaces that light passes on its way to the camera, which are no bounces",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    """Name and default are Cycles'."""
+    camera_path_length: int = setting(
+        1 + _MOST_BOUNCES,
         "Max Camera Bounces",
-        "Most bounces of camera paths off glass, mirrors and other specular surfaces; surfaces that gather photons "
-        "end them",
+        "Most bounces of camera rays and of the final gather, which Max Bounces limits as well; behind the last one "
+        "rays see what shines and nothing else",
         property_name="max_camera_bounces",
         property_offset=-1,
         minimum=1,
-        maximum=64,
-        soft_maximum=32,
+        maximum=1 + _MOST_BOUNCES,
+        soft_maximum=64,
     )
-    """d_eye: camera path segments, the primary ray being the first."""
+    """d_eye: camera path segments that may leave importons, the primary ray being the first."""
     photon_path_length: int = setting(
-        8,
+        1 + _MOST_BOUNCES,
         "Max Photon Bounces",
-        "Most bounces of photons off any surface",
+        "Most bounces of photons off any surface, which Max Bounces limits as well",
         property_name="max_photon_bounces",
         property_offset=-1,
         minimum=1,
-        maximum=64,
-        soft_maximum=32,
+        maximum=1 + _MOST_BOUNCES,
+        soft_maximum=64,
     )
-    """d_photon: photon path segments, the first leaving the light."""
+    """d_photon: photon path segments, the first leaving the light; transparent surfaces do not count."""
     alpha: float = setting(
         0.7,
         "Alpha",
@@ -465,6 +487,26 @@ class RenderSettings:
     def _named_by_users(self) -> tuple[RenderPass, ...]:
         return aov_passes(self.aovs) + light_group_passes(self.light_groups)
 
+    @property
+    def camera_bounces(self) -> int:
+        """Bounces of a camera path to the last vertex at which light is estimated."""
+        return min(self.max_bounces, self.camera_path_length - 1)
+
+    @property
+    def photon_bounces(self) -> int:
+        """Bounces of a photon to the last surface that stores it."""
+        return min(self.max_bounces, self.photon_path_length - 1)
+
+    @property
+    def camera_segments(self) -> int:
+        """Rays of a camera path, the most: one behind the last bounce sees what shines."""
+        return min(self.camera_bounces + 2 + self.transparent_max_bounces + _MOST_PASSED, MOST_SEGMENTS)
+
+    @property
+    def photon_segments(self) -> int:
+        """Rays of a photon path, the most."""
+        return min(self.photon_bounces + 1 + self.transparent_max_bounces + _MOST_PASSED, MOST_SEGMENTS)
+
     def photons_for(self, width: int, height: int) -> int:
         """Photons of an iteration that renders so many pixels. Where automatic, one a pixel within limits: those of
         the first iteration, which later ones do not exceed (integrator/photon_counts.py).
@@ -473,8 +515,7 @@ class RenderSettings:
         """
         if self.photons:
             return self.photons
-        most = min(_MOST_AUTOMATIC_PHOTONS, _MOST_AUTOMATIC_SEGMENTS // self.photon_path_length)
-        return max(min(width * height, most), _FEWEST_AUTOMATIC_PHOTONS)
+        return max(min(width * height, _MOST_AUTOMATIC_PHOTONS), _FEWEST_AUTOMATIC_PHOTONS)
 
     def with_values(self, **values: object) -> "RenderSettings":
         """A copy with some fields replaced; enumerations may be given by name.

@@ -7,6 +7,7 @@
 #include "common/gathering.glsl"
 #include "common/world_light.glsl"
 #include "common/path_history.glsl"
+#include "common/path_depth.glsl"
 #include "common/surface_tolerance.glsl"
 layout(std430, binding = 6) readonly buffer PhotonOrigins;
 
@@ -58,14 +59,15 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
 // Of direct light: rays find the rest. All of it where only the photons bring it.
 float direct_share(uint photon_number, float radius) {
     if (!(parameters.direct_world_flux > 0.0)) return 1.0;
-    PhotonOrigin world = photon_origins[photon_number % parameters.photon_count];
+    PhotonOrigin world = photon_origins[photon_path_of(photons[photon_number].path)];
     return world_direct_photon_share(world.radiance, world.pdf, parameters.direct_world_flux, radius);
 }
 
 // The gathering ray finds the rest, unless its path ends before.
-float caustic_share(uint photon_number, float radius) {
-    float radiance = photon_origins[photon_number % parameters.photon_count].radiance;
-    bool found = radiance > 0.0 && photon_number / parameters.photon_count <= parameters.most_scattered;
+float caustic_share(uint photon_number, uint importon_history, float radius) {
+    float radiance = photon_origins[photon_path_of(photons[photon_number].path)].radiance;
+    uint bounces = bounces_of(arrived_depth(importon_history) + photons[photon_number].depth);
+    bool found = radiance > 0.0 && bounces <= parameters.camera_bounces;
     return found ? world_photon_share(radiance, parameters.photon_flux, radius) : 1.0;
 }
 
@@ -76,13 +78,14 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
     return dot(offset, offset) < radius * radius;
 }
 
-// Whether light has scattered more often than its own is to, from what it lights first to the camera. Transparency on
-// either way does not count where nothing else has scattered there.
-bool exceeds_bounces(uint importon_history, uint photon_flags, uint photon_number) {
-    bool straight = first_scatter(arrived_history(importon_history)) == SCATTER_NONE;
-    uint bounces = (straight ? 0u : parameters.camera_segment)
-                 + ((photon_flags & PHOTON_DIRECT) != 0u ? 0u : photon_number / parameters.photon_count);
-    return bounces > photon_origins[photon_number % parameters.photon_count].max_bounces;
+// Whether light has been scattered more often than any or its own is to, from what it lights first to the camera, or
+// has passed more transparent surfaces.
+bool exceeds_depth(uint importon_history, uint photon_number) {
+    uint depth = arrived_depth(importon_history) + (photons[photon_number].depth & DEPTH_MASK);
+    uint most = parameters.max_bounces;
+    if (parameters.limits_bounces != 0u)
+        most = min(most, photon_origins[photon_path_of(photons[photon_number].path)].max_bounces);
+    return bounces_of(depth) > most || transparents_of(depth) > parameters.transparent_max_bounces;
 }
 
 // What diffused photons count for: the disk's area over that of the surface in it (coverage/probe.comp).
@@ -100,7 +103,6 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     float radius = photon_radius(flags, ITS.least_radius, ITS.radius, wide_radius);
     float radius2 = radius * radius;
     if (!(ITS.radius > 0.0) || !within_reach(ITS.gathers, offset, radius, flags)) return false;
-    if (parameters.limits_bounces != 0u && exceeds_bounces(ITS.history, flags, photon_number)) return false;
     float disks = ITS.radius * ITS.radius / radius2;
     stands_for = whole_word(floor(max(disks, 1.0) + 0.5));
     vec3 geometric = unpack_unit_vector(ITS.geometric_normal);
@@ -112,6 +114,7 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     // Photons count on the side they arrived at; only transmission links the two sides.
     uint kind = unpack_kind(ITS.lobe_kind);
     if (alignment < 0.0 && !lobe_transmits(kind) && largest(ITS.translucent) <= 0.0) return false;
+    if (exceeds_depth(ITS.history, photon_number)) return false;
     vec3 direction = photons[photon_number].direction;
     float side = alignment > 0.0 ? 1.0 : -1.0, away = photons[photon_number].distance;
     if (is_shut_off(side * height, dot(offset, photon_normal), side * dot(direction, geometric) * away, away, radius)
@@ -126,7 +129,7 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     estimate.diffuse = estimate.diffuse * flux * kernel;
     float share = 1.0, disk = disk_radius(ITS.least_radius, ITS.radius);
     if ((flags & PHOTON_DIRECT) != 0u) share = direct_share(photon_number, disk);
-    else if ((ITS.gathers & GATHERS_BY_RAY) != 0u) share = caustic_share(photon_number, disk);
+    else if ((ITS.gathers & GATHERS_BY_RAY) != 0u) share = caustic_share(photon_number, ITS.history, disk);
     estimate.radiance = radiance * share;
     estimate.diffuse *= share;
     return largest(estimate.radiance) > 0.0;

@@ -6,6 +6,9 @@ layout(std430, binding = 14) readonly buffer LivingPaths { LivingPathsHeader liv
 
 const uint NO_PATH = 0xffffffffu;  // more than any count of paths
 
+// Of a path among those of the list; behind its end more.
+uint living_place() { return invocation_index(); }
+
 // The number of the path that is this thread's, or NO_PATH behind the list's end.
 uint living_path() {
     uint place = invocation_index();

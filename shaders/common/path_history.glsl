@@ -4,10 +4,14 @@
 
 const uint HISTORY_FIRST = 3u;  // of the Scatter
 
-// Of an importon: as the path came, and as it goes on.
-uint history_word(uint arrived, uint departing) { return arrived | departing << 16u; }
-uint arrived_history(uint word) { return word & 0xffffu; }
-uint departing_history(uint word) { return word >> 16u; }
+// Of an importon: as the path came, and as it goes on; and its depth as it came.
+const uint HISTORY_BITS = 5u, HISTORY_MASK = (1u << HISTORY_BITS) - 1u;
+uint history_word(uint arrived, uint departing, uint depth) {
+    return arrived | departing << HISTORY_BITS | depth << 2u * HISTORY_BITS;
+}
+uint arrived_history(uint word) { return word & HISTORY_MASK; }
+uint departing_history(uint word) { return (word >> HISTORY_BITS) & HISTORY_MASK; }
+uint arrived_depth(uint word) { return word >> 2u * HISTORY_BITS; }
 
 uint first_scatter(uint history) { return history & HISTORY_FIRST; }
 

@@ -3,6 +3,9 @@
 
 #include <PhotonFlags>
 #include <PhotonHistory>
+#include <PhotonNumbers>
+
+uint photon_path_of(uint word) { return word & ((1u << PHOTON_SEGMENT_SHIFT) - 1u); }
 
 #include "common/disk_radius.glsl"
 #include <PhotonFootprints>

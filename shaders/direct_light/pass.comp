@@ -1,20 +1,27 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shadow rays go on beyond a transparent surface, with what it lets pass.
+// Shadow rays go on beyond a transparent surface, with what it lets pass. Surfaces that the camera path has passed
+// count as well, as in Cycles.
 
 layout(local_size_x = 64) in;
 
 #include "common/constants.glsl"
 #include "common/geometry.glsl"
 #include "common/living_paths.glsl"
+#include "common/path_depth.glsl"
+#include <CameraPath>
+#include <PassSurfaceParameters>
+layout(std140, binding = 0) uniform Parameters { PassSurfaceParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) buffer ShadowRays;
 layout(std430, binding = 2) buffer Contributions;
+layout(std430, binding = 3) readonly buffer CameraPaths;
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
-    vec3 passed = closures[index].transparent;
+    uint surfaces = transparents_of(camera_paths[index].depth) + parameters.passed;
+    vec3 passed = surfaces < parameters.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
     Ray ray = shadow_rays[index];
     contributions[index].rgb *= passed;
     shadow_rays[index].maximum_distance = 0.0;

@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
+#include "common/transparency.glsl"
 #include "common/path_history.glsl"
 layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
@@ -78,7 +79,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
-        if (light_pdf > 0.0 && parameters.last_segment == 0u && (specular || (gathers && environment)))
+        if (light_pdf > 0.0 && (specular || (gathers && environment)))
             weight *= power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.stored,
                                                                   shares.total, k) * scattered.pdf);
         vec3 part = weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
@@ -174,8 +175,9 @@ float left_to_rays(vec3 point, vec3 direction, float radius) {
 }
 
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(uint index, uint flags, float radius, Closure closure, vec3 throughput, PathShares shares,
-                             vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
+Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure closure, vec3 throughput,
+                             PathShares shares, vec3 wo, bool gathered, bool gathers, uvec4 choices,
+                             out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
@@ -193,7 +195,7 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     Light light = lights[choice.light];
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     float side = dot(facing, sampled.direction);
-    bool too_far = ((flags & PATH_STRAIGHT) != 0u ? 0u : parameters.segment) > light.max_bounces;
+    bool too_far = bounces_of(path.depth) > light.max_bounces;
     // All at once, since what each branch gives back would be kept beside what others compute.
     bool arrives = choice.probability > 0.0 && !too_far && largest(sampled.weight) > 0.0
                 && sampled.triangle != closure.triangle && side != 0.0;
@@ -206,7 +208,8 @@ Arriving arriving_from_light(uint index, uint flags, float radius, Closure closu
     vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
                                       side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
-    uint beyond = side > 0.0 ? flags : cross_surface(flags, closure.material, closure_backfacing(closure));
+    uint beyond = path.flags;
+    if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
     vec3 passed = segment_transmittance(beyond, sampled.distance);
     return Arriving(throughput * passed * scattered * sampled.weight / choice.probability, sampled.direction,
                     sampled.distance, choice.light, sampled.triangle);
@@ -229,11 +232,12 @@ void main() {
     light_triangles[index] = NO_TRIANGLE;
     Ray ray = rays[index];
     Closure closure = closures[index];
-    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure)) return;
     CameraPath path = camera_paths[index];
-    uint flags = path.flags;
+    uint flags = path.flags, bounces = bounces_of(path.depth);
+    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > parameters.camera_bounces) return;
+    if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathered = (flags & PATH_GATHERED) != 0u;
-    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
+    bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
                 && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
     vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
@@ -244,7 +248,7 @@ void main() {
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
     Parts parts;  // shares of it
-    Arriving arriving = arriving_from_light(index, flags, direct_radius(index, path, closure, viewer, gathered),
+    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered),
                                             closure, throughput, shares, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);

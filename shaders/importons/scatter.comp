@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
+#include "common/transparency.glsl"
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
@@ -37,7 +38,7 @@ layout(std430, binding = 15) readonly buffer RadiusFactors;
 
 // What does not wait for the lobe is written first: beside one, processors have no registers for all of an importon.
 void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius,
-                    float radius, float u, uint gathers, uint history) {
+                    float radius, float u, uint gathers, uint history, uint depth) {
     vec3 diffuse = throughput * closure.diffuse / PI, translucent = throughput * closure.translucent / PI;
     importons[index].position = closure.position;
     importons[index].direction = viewer;
@@ -50,7 +51,7 @@ void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, v
     importons[index].gathers = gathers;
     importons[index].shading_normal = closure.shading_normal;
     importons[index].least_radius = least_radius;
-    importons[index].history = history_word(history, history);
+    importons[index].history = history_word(history, history, depth);
     // One rough lobe stands for all of them, chosen by its albedo.
     float total = 0.0;
     int chosen = -1;
@@ -107,10 +108,10 @@ float environment_weight(CameraPath path, EnvironmentView view) {
 
 // Radiance of the world for a path that comes to no surface. What gathering rays find lights the surface before; what
 // others see is no matter of bounces, as in Cycles.
-vec3 found_world(uint flags, vec3 direction) {
+vec3 found_world(uint flags, uint depth, vec3 direction) {
     bool gathered = (flags & PATH_GATHERED) != 0u;
     if ((camera_ray_kind(flags) & parameters.world_visibility & RAYS_WITH_VISIBILITY) == 0u
-        || (gathered && parameters.segment > parameters.world_bounces + 1u)) return vec3(0.0);
+        || (gathered && bounces_of(depth) > parameters.world_bounces + 1u)) return vec3(0.0);
     return world_radiance(direction, (flags & PATH_STRAIGHT) != 0u && !gathered);
 }
 
@@ -234,6 +235,13 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     return event;
 }
 
+// Behind the last bounce a path only comes through transparent surfaces.
+PathShares limited_shares(PathShares shares, uint bounces) {
+    float straight = shares.specular.x;
+    if (bounces <= parameters.camera_bounces) return shares;
+    return PathShares(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight);
+}
+
 const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
 
 // The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
@@ -265,8 +273,10 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
                      * terminator_factor(closure.flags, facing, event.direction);
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
-    importons[index].history = history_word(history, scattered_history(history, event.scatter));
+    importons[index].history = history_word(history, scattered_history(history, event.scatter), path.depth);
     path.flags = event.flags;
+    if (event.scatter != SCATTER_NONE) path.depth += ONE_BOUNCE;
+    else if (counts_as_transparent(closure)) path.depth += ONE_TRANSPARENT;
     path.straight_length = event.scatter == SCATTER_NONE ? path.straight_length + closure.distance : 0.0;
     path.scatter_pdf = event.pdf;
     path.throughput *= event.weight * (total / (event.probability * survival));
@@ -313,7 +323,7 @@ void main() {
     vec3 world = vec3(0.0), start = scattered_at(index, path, ray);
     EnvironmentView view = EnvironmentView(0.0, 0.0, false);
     if (!hit) {
-        world = found_world(path.flags, ray.direction);
+        world = found_world(path.flags, path.depth, ray.direction);
         view = view_environment(start, ray);
     }
     float way = hit ? closures[index].distance : INFINITY_DISTANCE;
@@ -334,25 +344,26 @@ void main() {
     Closure closure = closures[index];
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
     radiances[index] += seen + seen_surface(path, start, closure);
-
     float radius = vertex_radius(path, ray.direction, closure);
     float caustic_radius = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));
     vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
-    bool gathers = parameters.final_gather != 0u && parameters.last_segment == 0u
+    uint bounces = bounces_of(path.depth);
+    if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
+    bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
                 && path_gathers(path.flags, length_to_gather_by(closure), parameters.gathers_again_below);
-    PathShares shares = path_shares(index, closure, path.throughput, -ray.direction, parameters.specular_alpha,
-                                    gathers);
+    PathShares shares = limited_shares(path_shares(index, closure, path.throughput, -ray.direction,
+                                                   parameters.specular_alpha, gathers), bounces);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
     }
     float least_radius = gathered ? caustic_radius : radius;
-    leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius, caustic_radius,
-                   u_lobe.y, (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history);
-    if (parameters.last_segment == 0u)
-        go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, caustic_radius), choices,
-              u_lobe.x, history);
+    leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
+                   bounces > parameters.camera_bounces ? 0.0 : caustic_radius, u_lobe.y,
+                   (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
+    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, caustic_radius), choices,
+          u_lobe.x, history);
 }

@@ -100,13 +100,13 @@ void main() {
             }
         }
         if (!near) break;
-        if (rejected(number, visit.x)) continue;
+        if (rejected(photons[number].path, visit.x)) continue;
         Estimate estimate;
         uint stands_for;
         if (!density_estimate(IMPORTON_OF(importon, visit.x), number, parameters.wide_radius, estimate, stands_for))
             continue;
         any = true;
-        photons[number].contributed = 1u;
+        photons[number].depth = photons[number].depth | PHOTON_CONTRIBUTED;
         collect_splat(collected, estimate.radiance, corner > CORNERS, stands_for);
         if (parameters.light_sums != 0u) add_light(visit.x, importon, number, photons[number].flags, estimate);
     }

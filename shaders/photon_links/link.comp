@@ -31,7 +31,7 @@ void main() {
     }
     if (!has_set(link.shadow_sets, shadow_set_of(code))) {
         closures[index].transparent = vec3(1.0);
-        flags |= CLOSURE_SHADOWLESS;
+        flags |= CLOSURE_SHADOWLESS | CLOSURE_ABSENT;
     }
     closures[index].flags = flags;
 }

@@ -8,16 +8,15 @@
 
 layout(local_size_x = 64) in;
 
-#include <AdjointParameters>
 #include "common/living_paths.glsl"
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { AdjointParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 #include "photons/parts.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
-layout(std430, binding = 3) buffer Photons;
+layout(std430, binding = 3) readonly buffer Photons;
 layout(std430, binding = 4) readonly buffer AdjointQueries;
+layout(std430, binding = 5) readonly buffer PhotonRange;
 
 void main() {
     uint index = living_path();
@@ -26,12 +25,11 @@ void main() {
     if (!(largest(flux) > 0.0)) return;
     AdjointQuery query = adjoint_queries[index];
     if (query.part != PART_NONE) {
-        uint slot = parameters.segment * parameters.photon_count + index;
+        vec3 arrival = photons[photon_first + living_place()].direction;
         float ior = query.part == PART_SHARP_TRANSMITTING ? 1.0 / query.ior : 1.0;
-        vec3 share = part_share(index, closures[index], query.part, ior, viewer, photons[slot].direction);
+        vec3 share = part_share(index, closures[index], query.part, ior, viewer, arrival);
         // What is too little to be compared stays as it is.
         flux *= mix(vec3(1.0), share / max(query.share, 1e-20), greaterThan(query.share, vec3(1e-20)));
-        photons[slot].scattered_flux = flux;
         photon_paths[index].flux = flux;
         photon_paths[index].flags = query.flags;
     }

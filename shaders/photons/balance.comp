@@ -9,10 +9,9 @@ layout(local_size_x = 64) in;
 #include <BalanceParameters>
 #include <Dispatch>
 #include "common/invocation.glsl"
-#include "common/photon.glsl"
 layout(std140, binding = 0) uniform Parameters { BalanceParameters parameters; };
 layout(std430, binding = 0) readonly buffer Emitted { PhotonPath emitted[]; };
-layout(std430, binding = 1) readonly buffer Photons;
+layout(std430, binding = 1) readonly buffer PhotonPaths;
 layout(std430, binding = 2) writeonly buffer Sums { FluxSums sums[]; };
 
 shared FluxSums shares[GROUP_SIZE];
@@ -22,21 +21,12 @@ float total(vec3 flux) { return flux.x + flux.y + flux.z; }
 FluxSums of_path(uint index) {
     FluxSums result = FluxSums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     if (index >= parameters.photon_count) return result;
-    float carried = total(emitted[index].flux);
-    result.emitted = carried;
-    for (uint segment = 0u; segment < parameters.segments; ++segment) {
-        uint slot = segment * parameters.photon_count + index;
-        uint flags = photons[slot].flags;
-        float scattered = 0.0;
-        if ((flags & PHOTON_ACTIVE) == 0u) result.lost += carried;
-        else if ((flags & PHOTON_ESCAPED) != 0u) result.escaped += carried;
-        else if (segment + 1u == parameters.segments) result.deposited += carried;
-        else {
-            scattered = total(photons[slot].scattered_flux);
-            result.absorbed += carried - scattered;
-        }
-        carried = scattered;
-    }
+    PhotonPath path = photon_paths[index];
+    result.emitted = total(emitted[index].flux);
+    result.escaped = path.escaped;
+    result.deposited = path.deposited;
+    result.lost = total(path.flux);
+    result.absorbed = result.emitted - result.escaped - result.deposited - result.lost;
     return result;
 }
 

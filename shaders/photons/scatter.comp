@@ -14,12 +14,14 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 #include "photons/parts.glsl"
+#include "common/transparency.glsl"
 layout(std430, binding = 10) readonly buffer Materials;
 #include "materials/medium.glsl"
 layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) writeonly buffer Photons;
 layout(std430, binding = 4) writeonly buffer AdjointQueries;
+layout(std430, binding = 5) readonly buffer PhotonRange;
 #include "photons/differentials.glsl"
 
 // unseen: a flag of direct photons from lights that do not take part in such events.
@@ -66,6 +68,18 @@ Scattering scatter_diffuse(Closure closure, bool reflected, vec3 arrival, vec2 d
     vec3 direction = cosine_hemisphere(geometric, disk);
     return Scattering(direction, counts * diffuse_share(closure, part, normal, direction, arrival), geometric,
                       !reflected, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true, part, 1.0);
+}
+
+float total(vec3 flux) { return flux.x + flux.y + flux.z; }
+
+// Takes out of a closure what a limit forbids: all but transparency behind the last bounce, and transparency behind
+// the last such surface. Whether anything is left.
+bool may_go_on(inout Closure closure, uint depth) {
+    if (transparents_of(depth) >= parameters.transparent_max_bounces && counts_as_transparent(closure))
+        closure.transparent = vec3(0.0);
+    if (bounces_of(depth) < parameters.photon_bounces) return true;
+    closure.flags |= CLOSURE_KEEPS_LIGHT;
+    return largest(closure.transparent) > 0.0;
 }
 
 // One event by its share of the flux; what is left of the probability is absorption.
@@ -190,8 +204,9 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
     }
 }
 
-// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with.
-vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, vec3 arrival, vec3 flux) {
+// The ray and the flux that a path goes on with, if it does; path_flags are those that it came with. counts: whether a
+// limit counts where it goes straight on.
+void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival, vec3 flux) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
@@ -199,7 +214,7 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
     Scattering scattering = scatter(index, closure, flux, arrival, from_light, random);
     float side = dot(scattering.direction, geometric);
     bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
-    if (!(largest(scattering.weight) > 0.0 && passes)) return vec3(0.0);
+    if (!(largest(scattering.weight) > 0.0 && passes)) return;
     bool straight = scattering.direction == -arrival;
     if (!straight)
         scattering.weight *= adjoint_correction(arrival, scattering.direction, geometric,
@@ -208,6 +223,8 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
     path_flags |= scattering.flags;
     if ((path_flags & scattering.unseen) != 0u) flux = vec3(0.0);
     photon_paths[index].flux = flux;
+    if (scattering.part != PART_TRANSPARENT) photon_paths[index].depth += ONE_BOUNCE;
+    else if (counts) photon_paths[index].depth += ONE_TRANSPARENT;
     if (!straight)
         path_flags = scattered_flags(path_flags, scattering.diffuse)
                    & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
@@ -221,37 +238,32 @@ vec3 go_on(uint index, Closure closure, uint path_flags, bool neighbors_known, v
     if (parameters.has_adjoint_queries != 0u)
         store_adjoint_query(index, closure, scattering, arrival, path_flags);
     else photon_paths[index].flags = path_flags;
-    return flux;
 }
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
-    uint slot = parameters.segment * parameters.photon_count + index;
+    uint slot = photon_first + living_place(), number = index | parameters.segment << PHOTON_SEGMENT_SHIFT;
     vec3 carried = photon_paths[index].flux;
     Ray ray = rays[index];
     rays[index].maximum_distance = 0.0;
     photon_paths[index].flux = vec3(0.0);
-    // Later segments' programs come to the paths that live by then only: what an earlier iteration left is cleared
-    // here.
-    if (parameters.segment == 0u)
-        for (uint later = 1u; later < parameters.segments; ++later)
-            photons[later * parameters.photon_count + index].flags = 0u;
+    uint path_flags = photon_paths[index].flags, depth = photon_paths[index].depth;
     if (!(largest(carried) > 0.0)) {
-        photons[slot].flags = 0u;
+        photons[slot] = Photon(vec3(0.0), 0u, carried, 0u, -ray.direction, 0.0, number, depth, 0u, 0u);
         return;
     }
-    uint path_flags = photon_paths[index].flags;
     uint flags = PHOTON_ACTIVE | photon_flags(path_flags);
     vec3 arrival = -ray.direction;
     Closure closure = closures[index];
     if (!closure_hit(closure)) {
-        photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, INFINITY_DISTANCE, vec3(0.0),
-                               0u);
+        photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, INFINITY_DISTANCE, number,
+                               depth, 0u, 0u);
+        photon_paths[index].escaped = total(carried);
         return;
     }
     vec3 flux = carried * segment_transmittance(path_flags, closure.distance);
-    bool ends = parameters.segment + 1u >= parameters.segments || !(largest(flux) > 0.0);
+    bool counts = counts_as_transparent(closure), ends = !(largest(flux) > 0.0);
     PhotonDifferential differential = photon_differentials[index];
     bool neighbors_known = differential.known != 0u;
     if (neighbors_known) {
@@ -266,7 +278,10 @@ void main() {
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) flags |= PHOTON_STORED;
     // Written before the path goes on: what it needs of registers then is more.
     float away = differential.before + closure.distance;
-    photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, away, vec3(0.0), 0u);
+    photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, away, number, depth, 0u,
+                           0u);
     photon_differentials[index].before = away;
-    if (!ends) photons[slot].scattered_flux = go_on(index, closure, path_flags, neighbors_known, arrival, flux);
+    if (ends) return;
+    if (may_go_on(closure, depth)) go_on(index, closure, path_flags, counts, neighbors_known, arrival, flux);
+    else photon_paths[index].deposited = total(carried);
 }

@@ -20,6 +20,7 @@ uint resolved_path;
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
 #include "common/photon.glsl"
+#include "common/path_depth.glsl"
 #include "common/light_sets.glsl"
 #include "resolve/ranges.glsl"
 
@@ -31,13 +32,21 @@ layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
 #include "materials/generated.glsl"
 
 #include <PathKinds>
-const uint LOOKING_BACK = 64u;  // more than any segment's number
+const uint LOOKING_BACK = 64u;  // segments so far apart may have the same random numbers
 
 uint path_flags(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA)
         return path_words[parameters.camera_stride * index + parameters.camera_flags];
     return parameters.path_kind == PATH_OF_PHOTON
            ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
+}
+
+// That of a path that came to a surface; to none other, where lights are sampled, of which nothing is asked.
+uint path_depth(uint index) {
+    if (parameters.path_kind == PATH_OF_CAMERA)
+        return path_words[parameters.camera_stride * index + parameters.camera_depth];
+    return parameters.path_kind == PATH_OF_PHOTON
+           ? path_words[parameters.photon_stride * index + parameters.photon_depth] : parameters.segment;
 }
 
 // How far a path had come straight through surfaces before its ray began.
@@ -73,13 +82,9 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
                 : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE
                 : parameters.path_kind == PATH_OF_SHADOW ? RAY_SHADOW : 0u;
     surface.ray_length = straight_length(index) + hit.distance;
-    surface.ray_depth = parameters.segment + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
-    surface.transparent_depth = 0u;
-    bool seen_through = parameters.path_kind == PATH_OF_CAMERA && (flags & PATH_STRAIGHT) != 0u;
-    if (seen_through && parameters.segment > 0u) {
-        surface.ray_depth = 0u;
-        surface.transparent_depth = parameters.segment;
-    }
+    uint depth = path_depth(index);
+    surface.ray_depth = bounces_of(depth) + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
+    surface.transparent_depth = transparents_of(depth);
 #ifdef ROUND_SHAPES
     make_round(surface);
 #endif
@@ -132,6 +137,7 @@ void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool 
     bool opaque = photon && (flags & PHOTON_CASTS_SHADOWS) != 0u && opaque_shadow;
     if (passes || (builder.closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) builder.closure.transparent = vec3(1.0);
     else if (opaque) builder.closure.transparent = vec3(0.0);
+    if (passes) builder.closure.flags |= CLOSURE_ABSENT;
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     // Shadow rays bring light through what is transparent, and photons and paths leave it to them.
     bool leaves_direct_light = shadowless || passes_shadow_rays

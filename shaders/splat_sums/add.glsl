@@ -15,7 +15,7 @@ void add_quanta(uint place, float quanta) {
 
 // Threads that meet here write the same mark.
 void add_splat(uint importon, uint photon, vec3 radiance, uint stands_for) {
-    photons[photon].contributed = 1u;
+    photons[photon].depth = photons[photon].depth | PHOTON_CONTRIBUTED;
     bool by_ray = (importons[importon].gathers & GATHERED_BY_RAY) != 0u;
     uint place = first_word(importon, by_ray);
     add_quanta(place, radiance.r * parameters.quanta);

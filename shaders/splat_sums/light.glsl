@@ -63,7 +63,7 @@ LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate e
 // In a loop of which drivers do not know the rounds: they would have the code of each sum apart.
 void add_light(uint pixel, Importon importon, uint photon, uint photon_flags, Estimate estimate) {
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
-        add_to_group_sum(pixel, photon_groups[photon % parameters.photon_count],
+        add_to_group_sum(pixel, photon_groups[photon_path_of(photons[photon].path)],
                          (importon.gathers & GATHERED_BY_RAY) != 0u, estimate.radiance);
     uint first = (parameters.light_sums & LIGHT_SUMS_SCATTERED) != 0u ? 0u : 2u;
     uint end = (parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u ? 3u : 2u;

@@ -7,7 +7,7 @@
 #include "splat_sums/light.glsl"
 
 void meet(uint importon, uint photon) {
-    if (rejected(photon, importon)) return;
+    if (rejected(photons[photon].path, importon)) return;
     vec3 offset = photons[photon].position - importons[importon].position;
     uint flags = photons[photon].flags;
     float radius = photon_radius(flags, importons[importon].least_radius, importons[importon].radius,

@@ -16,8 +16,8 @@ layout(std430, binding = 2) buffer PhotonsByLight { uint photons_by_light[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    uint number = stored_photons[index], first = 3u * light_of(number % parameters.photon_count);
+    uint number = stored_photons[index], first = 3u * light_of(photon_path_of(photons[number].path));
     atomicAdd(photons_by_light[first], 1u);
     if ((photons[number].flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(photons_by_light[first + 1u], 1u);
-    if (photons[number].contributed != 0u) atomicAdd(photons_by_light[first + 2u], 1u);
+    if ((photons[number].depth & PHOTON_CONTRIBUTED) != 0u) atomicAdd(photons_by_light[first + 2u], 1u);
 }

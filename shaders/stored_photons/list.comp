@@ -13,16 +13,17 @@ layout(std140, binding = 0) uniform Parameters { StoredParameters parameters; };
 layout(std430, binding = 0) readonly buffer Photons;
 layout(std430, binding = 1) buffer StoredPhotons;
 layout(std430, binding = 2) readonly buffer PhotonOrigins;
+layout(std430, binding = 3) readonly buffer PhotonRange;
 
 void main() {
     uint index = invocation_index();
-    if (index >= parameters.count) return;
+    if (index >= min(parameters.count, photon_end)) return;
     uint flags = photons[index].flags;
     if ((flags & PHOTON_STORED) == 0u) return;
     bool direct = (flags & PHOTON_DIRECT) != 0u;
     if (direct && parameters.takes_direct == DIRECT_NONE) return;
     if (direct && parameters.takes_direct == DIRECT_OF_WORLD
-        && !(photon_origins[index % parameters.photon_count].radiance > 0.0)) return;
+        && !(photon_origins[photon_path_of(photons[index].path)].radiance > 0.0)) return;
     stored_photons[atomicAdd(stored_count, 1u)] = index;
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(diffused_count, 1u);
     if ((flags & PHOTON_INDIRECT) != 0u) atomicAdd(indirect_count, 1u);

@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 
 #include <EnterParameters>
 #include "common/living_paths.glsl"
-#include "common/photon.glsl"
 #include "common/random.glsl"
 #include "common/sampling.glsl"
 layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
@@ -16,7 +15,6 @@ layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
 layout(std430, binding = 6) buffer PhotonPaths;
 layout(std430, binding = 7) writeonly buffer Rays;
 layout(std430, binding = 8) writeonly buffer Hits;
-layout(std430, binding = 9) writeonly buffer Photons;
 // Where they have gone in.
 layout(std430, binding = 10) readonly buffer Closures;
 
@@ -42,7 +40,6 @@ void main() {
     if (!(largest(flux) > 0.0)) {
         photon_paths[index].flux = vec3(0.0);
         rays[index].maximum_distance = 0.0;
-        photons[parameters.segment * parameters.path_count + index].scattered_flux = vec3(0.0);
         return;
     }
     photon_paths[index].flux = flux;

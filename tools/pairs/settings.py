@@ -46,7 +46,9 @@ def equalize(scene: bpy.types.Scene, effort: Effort) -> None:
     cycles.use_fast_gi = False
     cycles.samples, cycles.time_limit = effort.cycles_samples, effort.seconds
     ours.pixel_filter_type, ours.filter_width = FILTER
-    ours.max_camera_bounces = ours.max_photon_bounces = BOUNCES
+    ours.max_bounces, ours.transparent_max_bounces = BOUNCES, TRANSPARENT_BOUNCES
+    for name in ("max_camera_bounces", "max_photon_bounces"):
+        ours.property_unset(name)
     ours.film_exposure = cycles.film_exposure
     ours.use_denoising = ours.use_adaptive_sampling = False
     ours.samples, ours.time_limit = effort.samples, effort.seconds

@@ -14,7 +14,8 @@ SHARED = {
     "seed": "seed",
     "use_animated_seed": "use_animated_seed",
     "filter_width": "filter_width",
-    "max_camera_bounces": "max_bounces",
+    "max_bounces": "max_bounces",
+    "transparent_max_bounces": "transparent_max_bounces",
     **{
         name: name
         for what in ("use_{}denoising", "{}denoising_input_passes", "{}denoising_prefilter", "{}denoising_quality")
@@ -30,6 +31,7 @@ SHARED = {
     "pixel_filter_type": "pixel_filter_type",
 }
 """RPPM's properties and Cycles' that stand for the same; transparent film is one property for both."""
+_LIMITS_OF_PARTS = ("max_camera_bounces", "max_photon_bounces")
 _LEAST_AUTOMATIC_THRESHOLD = 0.001
 
 
@@ -60,12 +62,13 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
     bl_label = "Copy from Cycles"
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Copy; photons take as many bounces as the camera's paths."""
+        """Copy; the limits that Cycles does not know limit nothing any more."""
         own, cycles = context.scene.rppm, context.scene.cycles
         _copy(cycles, own, ((other, name) for name, other in SHARED.items()))
         for layer in context.scene.view_layers:
             _copy(layer.cycles, layer.rppm, OF_CYCLES.items())
-        own.max_photon_bounces = own.max_camera_bounces
+        for name in _LIMITS_OF_PARTS:
+            own.property_unset(name)
         for prefix in ("", "preview_"):
             if getattr(cycles, f"{prefix}adaptive_threshold") == 0.0:  # automatic, by the samples
                 automatic = max(_LEAST_AUTOMATIC_THRESHOLD, 1.0 / max(getattr(cycles, f"{prefix}samples"), 1))

@@ -14,6 +14,8 @@ SETTINGS = (
     "photons",
     "direct_light",
     "use_final_gather",
+    "max_bounces",
+    "transparent_max_bounces",
     "max_camera_bounces",
     "max_photon_bounces",
     "radius_scale",

@@ -17,9 +17,21 @@ class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         column = self.column()
+        column.prop(settings, "max_bounces", text="Total")
+        column.prop(settings, "transparent_max_bounces", text="Transparent")
+        column.prop(settings, "specular_roughness", text="Specular")
+
+
+class RPPM_PT_path_parts(RppmPanel, bpy.types.Panel):
+    bl_label = "Camera and Photons"
+    bl_parent_id = "RPPM_PT_paths"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
         column.prop(settings, "max_camera_bounces", text="Camera")
         column.prop(settings, "max_photon_bounces", text="Photon")
-        column.prop(settings, "specular_roughness", text="Specular")
 
 
 class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
@@ -68,6 +80,7 @@ class RPPM_PT_film(RppmPanel, bpy.types.Panel):
 
 CLASSES = (
     RPPM_PT_paths,
+    RPPM_PT_path_parts,
     RPPM_PT_radius,
     RPPM_PT_animation,
     RPPM_PT_film,

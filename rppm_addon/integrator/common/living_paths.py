@@ -15,6 +15,8 @@ from .records import LIVING_PATHS_HEADER
 
 Record("CountParameters", count="uint")
 
+SEGMENTS_AT_ONCE = 4
+"""A GPU is asked for the number of living paths this seldom, as it has to be waited for."""
 _GROUPS = LIVING_PATHS_HEADER.offset("groups")
 _FIRST = LIVING_PATHS_HEADER.size // 4
 
@@ -36,6 +38,7 @@ class LivingPaths(BufferSet):
         """The list, and where there is to be ``keep``, room for the next one."""
         self.most = 0
         """Paths that the list may have: as many as the list began with."""
+        self._bound = 0
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -61,7 +64,7 @@ class LivingPaths(BufferSet):
     def fill(self, paths: int) -> None:
         """List the paths from 0 to below ``paths``."""
         self.require(paths)
-        self.most = paths
+        self.most = self._bound = paths
         groups = -(-paths // GROUP_SIZE)
         self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
@@ -107,6 +110,15 @@ class LivingPaths(BufferSet):
         dispatches of no groups take it.
         """
         return self._context.is_software and self.read_count() == 0
+
+    def bound(self, segment: int) -> int:
+        """No fewer paths than are listed in a segment; 0 once it is known that none is. To be asked in every segment.
+
+        A driver on the processor tells exactly, a GPU every few segments (SEGMENTS_AT_ONCE).
+        """
+        if segment > 0 and (self._context.is_software or segment % SEGMENTS_AT_ONCE == 0):
+            self._bound = self.read_count()
+        return self._bound
 
     @property
     def known_count(self) -> int:

@@ -207,9 +207,10 @@ Constants(
     TERMINATOR_STEPS=TERMINATOR_STEPS,
 )
 
-PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint")
+PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint", depth="uint", escaped="float", deposited="float")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
-(PhotonFlag) with the volumes it is in (materials/medium.glsl)."""
+(PhotonFlag) with the volumes it is in (materials/medium.glsl); its ``depth`` (Depths); and of its flux, W summed over
+the channels, what left the scene and what it still carried to the vertex at which a limit cut it off."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
 PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
@@ -251,13 +252,25 @@ PHOTON = Record(
     geometric_normal="uint",
     direction="vec3",
     distance="float",
-    scattered_flux="vec3",
-    contributed="uint",
+    path="uint",
+    depth="uint",
+    unused0="uint",
+    unused1="uint",
 )
-"""One light path vertex, 64 bytes (paper section 5.1), at index segment * photons + path.
+"""One light path vertex, 64 bytes (paper section 5.1). Those of a segment follow each other as its living paths do.
 ``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
-transparent; ``contributed`` becomes 1 once an importon takes it. The upper
-bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known."""
+transparent. The upper bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known.
+``path`` is the number of its path, with that of the segment above (PhotonNumbers); ``depth`` that of the path (Depths),
+with PHOTON_CONTRIBUTED once an importon takes it."""
+PHOTON_SEGMENT_SHIFT = 22
+"""Photons of an iteration are fewer (MOST_PHOTONS), and segments than what is left of a word (MOST_SEGMENTS)."""
+PHOTON_CONTRIBUTED = 1 << 31
+Constants("PhotonNumbers", PHOTON_SEGMENT_SHIFT=PHOTON_SEGMENT_SHIFT, PHOTON_CONTRIBUTED=PHOTON_CONTRIBUTED)
+DEPTH_BITS = 11
+"""Of bounces, and of transparent surfaces above them."""
+Constants("Depths", DEPTH_BITS=DEPTH_BITS)
+StorageBlock("PhotonRange", "uint photon_first; uint photon_end;")
+"""Where the photons of the current segment begin among those of the iteration, and where they end."""
 StorageBlock("Photons", "Photon photons[];")
 StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint indirect_count; uint stored_photons[];")
 """How many are stored, how many of these are diffused, and the numbers of the stored ones."""
@@ -337,12 +350,13 @@ CAMERA_PATH = Record(
     straight_length="float",
     primary_radius="float",
     flags="uint",
+    depth="uint",
 )
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
 the clip start, ``straight_length`` of those that led straight through surfaces since the last event of another kind,
 ``primary_radius`` the radius of a pixel's cone at distance 1, or of its beam of parallel rays, from the primary hit on
 that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`` that of the scattered direction in
-1/sr where shadow rays sample the same light, else 0."""
+1/sr where shadow rays sample the same light, else 0; ``depth`` counts bounces and transparent surfaces (Depths)."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Of the pixels of a band, W/(m^2 sr), and alpha."""
@@ -396,7 +410,8 @@ IMPORTON = Record(
 a radius of their own between ``least_radius`` and ``radius``. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
 ``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag. ``history`` is the
-PathHistory of the path as it came, and in the upper half as it goes on, which stays when it ends."""
+PathHistory of the path as it came, and above as it goes on, which stays when it ends; in the upper bits its depth
+(Depths) as it came."""
 StorageBlock("Importons", "Importon importons[];")
 
 

@@ -10,6 +10,7 @@ from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
 from .band import Band, bands_of, rows_of_bands
 from .camera_view import is_rasterized
+from .living_paths import SEGMENTS_AT_ONCE
 from .viewport_demands import NO_DEMANDS, ViewportDemands, with_filtered
 
 
@@ -22,7 +23,7 @@ class StageSizes:
     photons: int = 0
     """Of an iteration, the most."""
     segments: int = 0
-    """Of a photon path, the first leaving the light."""
+    """Of a photon path that nothing but its bounces limits, the first leaving the light."""
     passes: tuple[RenderPass, ...] = ()
     has_catchers: bool = False
     """Whether objects catch shadows."""
@@ -58,7 +59,7 @@ class StageSizes:
             width,
             height,
             scene.photon_count,
-            scene.settings.photon_path_length,
+            scene.settings.photon_bounces + 1,
             passes,
             any(instance.shadow_catcher for instance in scene.instances),
             is_rasterized(scene.camera),
@@ -161,5 +162,6 @@ def photon_paths(sizes: StageSizes) -> int:
 
 
 def photon_slots(sizes: StageSizes) -> int:
-    """Places for photons: one for each segment of each path."""
-    return sizes.photons * sizes.segments
+    """Places for photons that there are from the beginning: for so many segments of each path. Where paths live longer
+    they become more."""
+    return sizes.photons * min(sizes.segments, SEGMENTS_AT_ONCE)

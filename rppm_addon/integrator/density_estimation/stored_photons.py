@@ -3,6 +3,7 @@
 
 import dataclasses
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import moderngl
@@ -13,23 +14,24 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...scene.lights import UNLIMITED_BOUNCES
 from ..common.living_paths import LivingPaths
 from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii
 
 ESTIMATE_PARAMETERS = {
     "wide_radius": "float",
-    "photon_count": "uint",
     "photon_flux": "float",
     "direct_world_flux": "float",
-    "most_scattered": "uint",
+    "max_bounces": "uint",
+    "transparent_max_bounces": "uint",
+    "camera_bounces": "uint",
     "limits_bounces": "uint",
-    "camera_segment": "uint",
 }
 """Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
 
-Record("StoredParameters", count="uint", photon_count="uint", takes_direct="uint")
-Record("LightPhotonsParameters", count="uint", photon_count="uint", light_count="uint")
+Record("StoredParameters", count="uint", takes_direct="uint")
+Record("LightPhotonsParameters", count="uint", light_count="uint")
 
 
 class DirectPhotons(enum.IntEnum):
@@ -64,31 +66,30 @@ class PhotonList(BufferSet):
 
     def collect(
         self,
-        photons: moderngl.Buffer,
+        blocks: Mapping[str, moderngl.Buffer],
         photon_origins: moderngl.Buffer,
-        emitted_count: int,
         slots: int,
         takes_direct: DirectPhotons,
     ) -> None:
-        """List those of so many slots (PHOTON) that are stored, straight from lights only as ``takes_direct`` says.
+        """List the photons that are stored, straight from lights only as ``takes_direct`` says.
 
-        photon_origins: PHOTON_ORIGIN of the ``emitted_count`` photons that left the lights.
+        blocks: Photons and PhotonRange, of no more than so many slots.
+        photon_origins: PHOTON_ORIGIN of the photons that left the lights.
         """
+        self._numbers.require_items(slots)
         self._numbers.write(np.zeros(3, np.uint32))
         self._program.run(
             slots,
-            {"Photons": photons, "StoredPhotons": self._numbers.buffer, "PhotonOrigins": photon_origins},
-            {"count": slots, "photon_count": emitted_count, "takes_direct": takes_direct.value},
+            {**blocks, "StoredPhotons": self._numbers.buffer, "PhotonOrigins": photon_origins},
+            {"count": slots, "takes_direct": takes_direct.value},
         )
         self.count, self.diffused_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
 
-    def by_light(
-        self, photons: moderngl.Buffer, lights: moderngl.Buffer, light_count: int, emitted_count: int
-    ) -> np.ndarray:
+    def by_light(self, photons: moderngl.Buffer, lights: moderngl.Buffer, light_count: int) -> np.ndarray:
         """(light_count, 3) uint32 of each light's photons, once they met importons: those listed, the diffused ones
         among them, and those that contributed.
 
-        lights: LIGHT records, by which the ``emitted_count`` photons left. Waits for the device.
+        lights: LIGHT records, by which the photons left. Waits for the device.
         """
         self._by_light.upload(np.zeros(3 * light_count, np.uint32))
         self._count_by_light.run(
@@ -99,7 +100,7 @@ class PhotonList(BufferSet):
                 "Lights": lights,
                 "PhotonsByLight": self._by_light.buffer,
             },
-            {"count": self.count, "photon_count": emitted_count, "light_count": light_count},
+            {"count": self.count, "light_count": light_count},
         )
         return self._by_light.read(np.uint32, 3 * light_count).reshape(-1, 3).copy()
 
@@ -121,7 +122,6 @@ class StoredPhotons:
     photon_origins: moderngl.Buffer
     groups: moderngl.Buffer
     """PhotonGroups, where there are any."""
-    emitted_count: int
     photon_flux: float
     """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
     direct_world_flux: float
@@ -172,13 +172,16 @@ class TakingImportons:
     """Whether the paths go on from there to gather: then the importons take no indirect photons."""
     by_ray: bool
     """Whether gathering rays may have led there, which widens the narrow radius."""
-    most_scattered: int
-    """Caustics of the world by up to so many surfaces are found by gathering rays as well, if there are any."""
     raster: CameraRaster | None
     """Where first hits lie on the camera's raster."""
     center: np.ndarray
     """Of the splat cubemap for all others, (3,) meters, which changes no sum."""
-    segment: int = 0
+    max_bounces: int = UNLIMITED_BOUNCES
+    """Of photon and importon together."""
+    transparent_max_bounces: int = UNLIMITED_BOUNCES
+    """Transparent surfaces that both have passed, likewise."""
+    camera_bounces: int = UNLIMITED_BOUNCES
+    """Caustics of the world by up to so many bounces of both are found by gathering rays as well, if there are any."""
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
         """That the narrow radii of these importons do not exceed, meters."""
@@ -192,10 +195,10 @@ class TakingImportons:
         """Values of ESTIMATE_PARAMETERS."""
         return {
             "wide_radius": photons.radii.wide,
-            "photon_count": photons.emitted_count,
             "photon_flux": photons.photon_flux,
             "direct_world_flux": photons.direct_world_flux,
-            "most_scattered": self.most_scattered,
+            "max_bounces": self.max_bounces,
+            "transparent_max_bounces": self.transparent_max_bounces,
+            "camera_bounces": self.camera_bounces,
             "limits_bounces": photons.limits_bounces,
-            "camera_segment": self.segment,
         }

@@ -190,7 +190,7 @@ class DeviceScene:
             return
         warn_of_open_bodies(scene, self.materials.materials_with_media, self._checked_bodies)
         settings = scene.settings
-        if self.materials.media_emit and not (settings.use_final_gather and settings.camera_path_length > 1):
+        if self.materials.media_emit and not (settings.use_final_gather and settings.camera_bounces > 0):
             scene.warn("Volumes that emit light shine on surfaces by Final Gather only, which is off")
 
     @contextlib.contextmanager

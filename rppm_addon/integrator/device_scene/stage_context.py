@@ -37,4 +37,4 @@ class StageContext:
     @property
     def gathers(self) -> bool:
         """Whether camera paths go on from the first surface that stores photons to gather indirect light."""
-        return self.settings.use_final_gather and self.settings.camera_path_length > 1
+        return self.settings.use_final_gather and self.settings.camera_bounces > 0

@@ -7,6 +7,8 @@ cells, and a cell is chosen by how often its photons contributed. Every cell kee
 by the density, so energy stays as it is.
 """
 
+from collections.abc import Mapping
+
 import moderngl
 import numpy as np
 
@@ -19,8 +21,9 @@ from ...gl.storage_blocks import StorageBlock
 from ..common.records import LightShape
 
 StorageBlock("PhotonCells", "uint photon_cells[];")
-Constants("GuideCells", NO_CELL=0xFFFFFFFF)
-Record("LearnParameters", count="uint", segments="uint")
+Constants("GuideCells", NO_CELL=0xFFFFFFFF, CELL_CONTRIBUTED=1 << 31)
+"""The latter marks cells of photons that have been counted."""
+Record("LearnParameters", count="uint")
 
 _DEFENSIVE = 0.25
 """Share of the photons that leave as if there were no guide: none has more than four times its plain flux."""
@@ -124,12 +127,15 @@ class Guide(BufferSet):
         self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
         self._photon_cells.require_items(photons)
 
-    def tally(self, photons: moderngl.Buffer, count: int, segments: int) -> None:
-        """Count an iteration's photons that contributed, once they have been splatted."""
+    def tally(self, blocks: Mapping[str, moderngl.Buffer], slots: int, count: int) -> None:
+        """Count an iteration's photons that contributed, once they have been splatted.
+
+        blocks: Photons and PhotonRange, of no more than so many slots. count: photons that left the lights.
+        """
         self._program.run(
-            count,
-            {"Photons": photons, "PhotonCells": self._photon_cells.buffer, "Tallies": self._tallies.buffer},
-            {"count": count, "segments": segments},
+            max(slots, count),
+            {**blocks, "PhotonCells": self._photon_cells.buffer, "Tallies": self._tallies.buffer},
+            {"count": count},
         )
 
     def _choose_by(self, found: list[np.ndarray]) -> None:

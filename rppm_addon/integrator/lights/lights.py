@@ -3,6 +3,7 @@
 
 import logging
 import math
+from collections.abc import Mapping
 
 import moderngl
 import numpy as np
@@ -368,9 +369,9 @@ class Lights(BufferSet):
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
-    def tally(self, photons: moderngl.Buffer, segments: int) -> None:
-        """Count what an iteration's photons were good for, once they have been splatted."""
-        self.guide.tally(photons, self._photons, segments)
+    def tally(self, photons: Mapping[str, moderngl.Buffer], slots: int) -> None:
+        """Count what an iteration's photons were good for, once they have been splatted (Guide.tally)."""
+        self.guide.tally(photons, slots, self._photons)
 
     def learn(self, photons: int) -> float:
         """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.

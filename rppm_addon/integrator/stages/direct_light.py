@@ -26,7 +26,8 @@ Record(
     **RADIUS_PARAMETERS,
     segment="uint",
     first_pixel="uint",
-    last_segment="uint",
+    camera_bounces="uint",
+    transparent_max_bounces="uint",
     specular_alpha="float",
     final_gather="uint",
     gathers_again_below="float",
@@ -35,6 +36,8 @@ Record(
     sample_weight="float",
     splits_light="uint",
 )
+
+Record("PassSurfaceParameters", passed="uint", transparent_max_bounces="uint")
 
 
 def _told_pixels(sizes: StageSizes) -> int:
@@ -103,7 +106,7 @@ class DirectLight(BufferSet):
                 )
                 linking = context.lights.linking_blocks(self.contributions.buffer)
                 if context.materials.any_passes_shadow_rays:
-                    self._pass_surfaces(context, linking, iteration, segment)
+                    self._pass_surfaces(context, importons, linking, iteration, segment)
                 else:
                     context.deep_cubemap.occluded(
                         self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
@@ -121,6 +124,7 @@ class DirectLight(BufferSet):
     def _pass_surfaces(
         self,
         context: StageContext,
+        importons: Importons,
         linking: Mapping[str, moderngl.Buffer] | None,
         iteration: Iteration,
         segment: int,
@@ -131,7 +135,8 @@ class DirectLight(BufferSet):
             buffer.require_items(self.living_rays.most)
         passing.require(self.living_rays.most, to_keep=True)
         passing.take(self.living_rays, rays.buffer)
-        for _ in range(context.settings.camera_path_length):
+        most = context.settings.transparent_max_bounces
+        for surfaces in range(most + 1):
             context.deep_cubemap.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
             met = {
                 "Hits": hits.buffer,
@@ -149,8 +154,9 @@ class DirectLight(BufferSet):
                 "Closures": closures.buffer,
                 "ShadowRays": rays.buffer,
                 "Contributions": self.contributions.buffer,
+                "CameraPaths": importons.paths.buffer,
             }
-            passing.run(self._pass, passed)
+            passing.run(self._pass, passed, {"passed": surfaces, "transparent_max_bounces": most})
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
@@ -199,7 +205,8 @@ class DirectLight(BufferSet):
                 **context.lights.parameters(iteration),
                 **radii.parameters,
                 "segment": segment,
-                "last_segment": segment == context.settings.camera_path_length - 1,
+                "camera_bounces": context.settings.camera_bounces,
+                "transparent_max_bounces": context.settings.transparent_max_bounces,
                 "first_pixel": band.first_pixel,
                 "specular_alpha": context.settings.specular_roughness**2,
                 "final_gather": context.settings.use_final_gather,

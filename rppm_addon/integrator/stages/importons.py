@@ -26,7 +26,8 @@ Record(
     "ScatterImportonsParameters",
     **LIGHT_PARAMETERS,
     segment="uint",
-    last_segment="uint",
+    camera_bounces="uint",
+    transparent_max_bounces="uint",
     first_pixel="uint",
     film_transparent="uint",
     next_event="uint",
@@ -82,11 +83,11 @@ class Importons(BufferSet):
         """The same of programs that look at where light comes to the paths, which may be at another place."""
         return self.path_blocks | {"Closures": self._lit_closures.buffer}
 
-    def trace(self, context: StageContext) -> bool:
+    def trace(self, context: StageContext, segment: int) -> bool:
         """Find what the paths that go on hit; whether any may do so."""
         with context.timers.stage("camera tracing"):
             self.living.keep(self.rays.buffer)
-            if self.living.known_empty:
+            if not self.living.bound(segment):
                 return False
             self.find_hits(context)
             return True
@@ -137,7 +138,8 @@ class Importons(BufferSet):
                 {
                     **lights.parameters(iteration),
                     "segment": segment,
-                    "last_segment": segment == settings.camera_path_length - 1,
+                    "camera_bounces": settings.camera_bounces,
+                    "transparent_max_bounces": settings.transparent_max_bounces,
                     "first_pixel": band.first_pixel,
                     "film_transparent": settings.film_transparent,
                     "next_event": settings.direct_light is DirectLight.RAYS,
@@ -157,10 +159,11 @@ class Importons(BufferSet):
             self.living,
             gathers=segment == 0 and context.gathers,
             by_ray=segment > 0 and context.gathers,
-            most_scattered=max(context.settings.camera_path_length - segment - 2, 0),
             raster=raster,
             center=context.center,
-            segment=segment,
+            max_bounces=context.settings.max_bounces,
+            transparent_max_bounces=context.settings.transparent_max_bounces,
+            camera_bounces=context.settings.camera_bounces,
         )
 
     def footprints(self, count: int) -> np.ndarray:

@@ -22,7 +22,9 @@ from ..common.records import (
     PHOTON_DIFFERENTIAL,
     PHOTON_ORIGIN,
     PHOTON_PATH,
+    PHOTON_SEGMENT_SHIFT,
     RAY,
+    PhotonFlag,
 )
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
@@ -34,11 +36,12 @@ from .photon_groups import PhotonGroups
 from .photon_links import PhotonLinks
 from .subsurface import Subsurface
 
+Record("BeginSegmentParameters", segment="uint")
 Record(
     "ScatterPhotonsParameters",
-    photon_count="uint",
     segment="uint",
-    segments="uint",
+    photon_bounces="uint",
+    transparent_max_bounces="uint",
     seed="uint",
     iteration="uint",
     specular_alpha="float",
@@ -46,8 +49,7 @@ Record(
     footprint_photons="float",
     shrinkage="float",
 )
-Record("AdjointParameters", photon_count="uint", segment="uint")
-Record("BalanceParameters", photon_count="uint", segments="uint")
+Record("BalanceParameters", photon_count="uint")
 
 
 def _flux_groups(sizes: StageSizes) -> int:
@@ -55,11 +57,12 @@ def _flux_groups(sizes: StageSizes) -> int:
 
 
 class Photons(BufferSet):
-    """The photon buffer of one iteration: ``photons`` at index segment * photon_count + path; ``photon_origins``
-    tells of each path where it began."""
+    """The photons of one iteration: those of a segment follow those of the segments before, one for each path that
+    lives, so that they take as much memory as there are; ``photon_origins`` tells of each path where it began."""
 
     remedy = "lower the photons per iteration or the photon path length"
     photons = StorageBuffer("photons", PHOTON, photon_slots, texel_bytes=4)
+    _range = StorageBuffer("range of photons", "uint", 2)
     photon_origins = StorageBuffer("photon origins", PHOTON_ORIGIN, photon_paths)
     _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths)
     _rays = StorageBuffer("photon rays", RAY, photon_paths)
@@ -79,8 +82,11 @@ class Photons(BufferSet):
         self._context = context
         self._scatter = library.compute("photons/scatter.comp")
         self._adjoint = library.compute("photons/adjoint.comp")
+        self._begin = library.compute("photons/begin_segment.comp")
         self._balance = library.compute("photons/balance.comp")
-        self.photon_count, self.segments = sizes.photons, sizes.segments
+        self.photon_count = sizes.photons
+        self.slots = 0
+        """Photons of the last iteration: no more than so many."""
         self._emission = PhotonEmission(library)
 
     @property
@@ -102,16 +108,17 @@ class Photons(BufferSet):
             "PhotonPaths": self._paths.buffer,
             "Photons": self.photons.buffer,
             "AdjointQueries": self._adjoint_queries.buffer,
+            "PhotonRange": self._range.buffer,
         }
 
     @property
-    def slots(self) -> int:
-        """Places in the buffer of the last iteration's photons."""
-        return self.photon_count * self.segments
+    def stored_blocks(self) -> dict[str, moderngl.Buffer]:
+        """Storage blocks of programs that go through all photons of the iteration."""
+        return {"Photons": self.photons.buffer, "PhotonRange": self._range.buffer}
 
     def emit(self, context: StageContext, iteration: Iteration) -> None:
         """DirectPhotonHits: the iteration's photons leave the lights and find their first hits."""
-        self.photon_count = iteration.photon_count
+        self.photon_count, self.slots = iteration.photon_count, 0
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
@@ -130,11 +137,11 @@ class Photons(BufferSet):
                 self._emission.cut_soft_lights(context, rays, hits, paths, self._living)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
-    def trace(self, context: StageContext) -> bool:
+    def trace(self, context: StageContext, segment: int) -> bool:
         """Find what the photons that go on hit; whether any may do so."""
         with context.timers.stage("photon tracing"):
             self._living.keep(self._rays.buffer)
-            if self._living.known_empty:
+            if not self._living.bound(segment):
                 return False
             context.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self._living)
             return True
@@ -158,9 +165,9 @@ class Photons(BufferSet):
 
     def scatter(self, context: StageContext, subsurface: Subsurface, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
-        # Nothing goes on from the last segment's hits.
-        has_adjoint_queries = context.materials.any_depends_on_view and segment < self.segments - 1
+        has_adjoint_queries = context.materials.any_depends_on_view
         with context.timers.stage("photon scattering"):
+            self._begin_segment(segment)
             if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
                 blocks = {
                     "Rays": self._rays.buffer,
@@ -179,9 +186,9 @@ class Photons(BufferSet):
                     "Materials": context.materials.buffers["Materials"],
                 },
                 {
-                    "photon_count": self.photon_count,
                     "segment": segment,
-                    "segments": self.segments,
+                    "photon_bounces": context.settings.photon_bounces,
+                    "transparent_max_bounces": context.settings.transparent_max_bounces,
                     "seed": iteration.seed,
                     "iteration": iteration.number,
                     "specular_alpha": context.settings.specular_roughness**2,
@@ -195,8 +202,15 @@ class Photons(BufferSet):
             subsurface.walk_photons(context, self._living, blocks, iteration, segment)
             self.resolve(context, iteration, segment, has_adjoint_queries=True)
             with context.timers.stage("photon scattering"):
-                parameters = {"photon_count": self.photon_count, "segment": segment}
-                self._living.run(self._adjoint, self._blocks, parameters)
+                self._living.run(self._adjoint, self._blocks)
+
+    def _begin_segment(self, segment: int) -> None:
+        """Make room for a photon of each living path behind those of the segments before."""
+        self.slots += self._living.bound(segment)
+        self.photons.extend_items(self.slots)
+        self._begin.run(
+            1, {"LivingPaths": self._living.buffer, "PhotonRange": self._range.buffer}, {"segment": segment}
+        )
 
     def list_stored(self, context: StageContext, listed: PhotonList, iteration: Iteration) -> PhotonList:
         """List the photons that importons may take. Where shadow rays find direct light, direct ones would count it
@@ -206,7 +220,7 @@ class Photons(BufferSet):
             takes_direct = DirectPhotons.ALL
         with context.timers.stage("photon list"):
             directions = self.photon_origins.buffer
-            listed.collect(self.photons.buffer, directions, self.photon_count, self.slots, takes_direct)
+            listed.collect(self.stored_blocks, directions, self.slots, takes_direct)
         return listed
 
     def stored(self, context: StageContext, iteration: Iteration, listed: PhotonList, radii: Radii) -> StoredPhotons:
@@ -221,7 +235,6 @@ class Photons(BufferSet):
             listed.indirect_count,
             self.photon_origins.buffer,
             self._groups.groups.buffer,
-            self.photon_count,
             context.lights.photon_flux,
             iteration.direct_world_flux,
             radii.splats,
@@ -232,21 +245,25 @@ class Photons(BufferSet):
     def flux_balance(self) -> dict[str, float]:
         """Where the flux of the last iteration went, W summed over the channels.
 
-        ``deposited`` is what the paths still carried to their last vertex, where they are cut off; ``absorbed`` is what
-        the vertices before kept, changes of index included. ``lost`` is flux on a ray of which no segment tells: it
-        must be zero.
+        ``deposited`` is what paths still carried to the vertex where a limit cut them off; ``lost`` is flux on a ray
+        of which no segment tells: it must be zero. ``absorbed`` is the rest, changes of index included.
         Russian roulette makes single events absorb more or less than their share, the sum being right.
         """
         groups = -(-self.photon_count // FLUX_GROUP)
         self._balance.run(
             self.photon_count,
-            {"Emitted": self._emitted.buffer, "Photons": self.photons.buffer, "Sums": self._sums.buffer},
-            {"photon_count": self.photon_count, "segments": self.segments},
+            {"Emitted": self._emitted.buffer, "PhotonPaths": self._paths.buffer, "Sums": self._sums.buffer},
+            {"photon_count": self.photon_count},
         )
         sums = self._sums.read(FLUX_SUMS.dtype, groups)
         return {name: float(sums[name].sum(dtype=np.float64)) for name in FLUX_NAMES}
 
     def read(self) -> np.ndarray:
-        """(segments, photon_count) PHOTON records of the last iteration."""
-        records = self.photons.read(PHOTON.dtype, self.segments * self.photon_count)
-        return records.reshape(self.segments, self.photon_count)
+        """(segments, photon_count) PHOTON records of the last iteration by segment and path: zeros where none is."""
+        end = int(self._range.read(np.uint32, 2)[1])
+        records = self.photons.read(PHOTON.dtype, end)
+        records = records[records["flags"] & PhotonFlag.ACTIVE != 0]
+        segments, paths = np.divmod(records["path"], 1 << PHOTON_SEGMENT_SHIFT)
+        result = np.zeros((int(segments.max(initial=0)) + 1, self.photon_count), PHOTON.dtype)
+        result[segments, paths] = records
+        return result

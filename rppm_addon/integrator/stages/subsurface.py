@@ -17,7 +17,7 @@ from ..common.stage_sizes import StageSizes, subsurface_walks
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
-Record("EnterParameters", seed="uint", iteration="uint", segment="uint", first_path="uint", path_count="uint")
+Record("EnterParameters", seed="uint", iteration="uint", segment="uint", first_path="uint")
 Record(
     "WalkParameters",
     seed="uint",
@@ -113,12 +113,11 @@ class Subsurface(BufferSet):
         }
         enter, leave = (self._programs[name] for name in programs)
         walk = self._library.compute("subsurface/walk.comp", context.deep_cubemap.traversal_defines)
-        whole = parameters | {"path_count": iteration.photon_count}
 
         def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:
             return {name: buffers[name] for name in program.blocks - {"LivingPaths"}}
 
-        living.run(enter, of(enter), whole)
+        living.run(enter, of(enter), parameters)
         self._entered.take(living, self._rays.buffer)
         walking = self._walking
         walking.require(living.most, to_keep=True)
@@ -131,4 +130,4 @@ class Subsurface(BufferSet):
             walking.run(walk, of(walk), parameters | steps)
             walking.keep(self._rays.buffer)
             first = end
-        self._entered.run(leave, of(leave), whole)
+        self._entered.run(leave, of(leave), parameters)

@@ -34,6 +34,8 @@ Record(
     path_kind="uint",
     camera_stride="uint",
     camera_flags="uint",
+    camera_depth="uint",
+    photon_depth="uint",
     camera_straight_length="uint",
     photon_stride="uint",
     photon_flags="uint",
@@ -164,8 +166,10 @@ class Resolve(BufferSet):
             "camera_stride": CAMERA_PATH.size // 4,
             "camera_flags": CAMERA_PATH.offset("flags") // 4,
             "camera_straight_length": CAMERA_PATH.offset("straight_length") // 4,
+            "camera_depth": CAMERA_PATH.offset("depth") // 4,
             "photon_stride": PHOTON_PATH.size // 4,
             "photon_flags": PHOTON_PATH.offset("flags") // 4,
+            "photon_depth": PHOTON_PATH.offset("depth") // 4,
         }
 
     def _program(self, text: str, scene: Scene, materials: MaterialTables) -> ComputeProgram:

@@ -11,12 +11,13 @@ def test_from_cycles_and_back(scene):
     cycles, own = scene.cycles, scene.rppm
     cycles.samples, cycles.preview_samples, cycles.time_limit = 300, 40, 12.5
     cycles.seed, cycles.use_animated_seed, cycles.filter_width, cycles.max_bounces = 9, True, 2.0, 5
+    cycles.transparent_max_bounces, own.max_camera_bounces, own.max_photon_bounces = 20, 3, 3
     cycles.use_denoising, cycles.denoising_quality, cycles.preview_denoising_start_sample = True, "FAST", 7
     assert bpy.ops.rppm.copy_from_cycles() == {"FINISHED"}
-    assert [getattr(own, name) for name in list(SHARED)[:7]] == [300, 40, 12.5, 9, True, 2.0, 5]
+    assert [getattr(own, name) for name in list(SHARED)[:8]] == [300, 40, 12.5, 9, True, 2.0, 5, 20]
     assert (own.use_denoising, own.denoising_quality, own.preview_denoising_start_sample) == (True, "FAST", 7)
-    assert own.max_photon_bounces == 5
-    for name, value in {"samples": 7, "seed": 3, "max_camera_bounces": 2, "use_animated_seed": False}.items():
+    assert own.max_camera_bounces == own.max_photon_bounces == 1024, "total bounces mean what they mean in Cycles"
+    for name, value in {"samples": 7, "seed": 3, "max_bounces": 2, "use_animated_seed": False}.items():
         setattr(own, name, value)
     own.pixel_filter_type, own.film_exposure, own.use_preview_adaptive_sampling = "BOX", 2.0, False
     assert bpy.ops.rppm.copy_to_cycles() == {"FINISHED"}
@@ -39,7 +40,7 @@ def test_an_automatic_noise_threshold_is_that_of_cycles(scene):
 def test_what_is_out_of_range_is_brought_into_it(scene):
     scene.cycles.max_bounces, scene.rppm.filter_width = 1024, 0.0
     bpy.ops.rppm.copy_from_cycles()
-    assert scene.rppm.max_camera_bounces == 63
+    assert scene.rppm.max_bounces == 1024
     scene.rppm.filter_width = 0.0
     bpy.ops.rppm.copy_to_cycles()
     assert scene.cycles.filter_width > 0.0

@@ -63,7 +63,7 @@ def test_settings_are_equal(registered):
     assert not scene.render.use_freestyle
     assert not scene.render.use_border
     assert (scene.render.resolution_x, scene.render.resolution_y) == (96, 72)
-    assert scene.cycles.diffuse_bounces == scene.rppm.max_photon_bounces == BOUNCES
+    assert scene.cycles.diffuse_bounces == scene.rppm.max_bounces == BOUNCES
 
 
 @pytest.mark.long

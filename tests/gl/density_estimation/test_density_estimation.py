@@ -16,7 +16,7 @@ from busy_scenes import (
 )
 
 from rppm_addon.integrator.common import band
-from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.common.records import PHOTON_CONTRIBUTED, PhotonFlag
 from rppm_addon.integrator.density_estimation import density_estimator
 from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import (
@@ -37,7 +37,7 @@ def rendered(mapper, scene: Scene, route: DensityEstimation) -> list[np.ndarray]
         mapper.iterate()
         photons = mapper.read_photons()
         found += [mapper.stages.density_estimator.sums.photons_taken(mapper.stages.bands[-1].pixel_count)]
-        found += [(photons["contributed"] != 0) & (photons["flags"] & PhotonFlag.STORED != 0)]
+        found += [(photons["depth"] & PHOTON_CONTRIBUTED != 0) & (photons["flags"] & PhotonFlag.STORED != 0)]
     state = mapper.state()
     return [state.radiance, np.array([state.wide_radius]), state.radius_factors, *found]
 

@@ -9,6 +9,7 @@ from rppm_addon.integrator.common.living_paths import LivingPaths
 from rppm_addon.integrator.common.records import (
     IMPORTON,
     PHOTON,
+    PHOTON_CONTRIBUTED,
     PHOTON_FLAG_BITS,
     PHOTON_ORIGIN,
     GatherFlag,
@@ -40,13 +41,14 @@ class Device:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(photons,) bool of those that contributed, (importons,) diffused photons taken, (importons,) bool of those
         whose sums are more than 0."""
-        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "photon origins")]
-        directions = PHOTON_ORIGIN.zeros(len(photons))
-        for buffer, array in zip(buffers, (photons, importons, directions), strict=True):
+        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "photon origins", "range")]
+        directions, whole = PHOTON_ORIGIN.zeros(len(photons)), np.uint32([0, len(photons)])
+        for buffer, array in zip(buffers, (photons, importons, directions, whole), strict=True):
             buffer.upload(array)
         sizes = StageSizes(len(importons), 1, photons=len(photons), segments=1)
         listed = PhotonList(self._context, self._library, sizes)
-        listed.collect(buffers[0].buffer, buffers[2].buffer, len(photons), len(photons), DirectPhotons.ALL)
+        blocks = {"Photons": buffers[0].buffer, "PhotonRange": buffers[3].buffer}
+        listed.collect(blocks, buffers[2].buffer, len(photons), DirectPhotons.ALL)
         sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, True)
         sums.clear()
@@ -54,15 +56,15 @@ class Device:
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
             listed.indirect_count,
-            buffers[2].buffer, buffers[2].buffer, len(photons), 1.0, 0.0, radii,
+            buffers[2].buffer, buffers[2].buffer, 1.0, 0.0, radii,
             float(np.abs(photons["position"]).max()),
         )  # fmt: skip
         living = LivingPaths(self._context, self._library, "paths", "take fewer")
         living.fill(len(importons))
-        taking = TakingImportons(buffers[1].buffer, living, False, True, 0, None, np.zeros(3))
+        taking = TakingImportons(buffers[1].buffer, living, False, True, None, np.zeros(3))
         grid.prepare(stored)
         grid.splat(stored, taking, sums)
-        contributed = buffers[0].read(PHOTON.dtype, len(photons))["contributed"] != 0
+        contributed = buffers[0].read(PHOTON.dtype, len(photons))["depth"] & PHOTON_CONTRIBUTED != 0
         result = contributed, sums.photons_taken(len(importons))[:, 0], sums.read(len(importons)).any(axis=(1, 2))
         for part in (*buffers, living, listed, sums, grid):
             part.release()

@@ -71,12 +71,19 @@ def diffuse_room(**settings):
     return scene
 
 
-def last_importons(mapper, count: int) -> np.ndarray:
-    """(count,) importons of the last segment, with radius 0 where the path has ended before."""
-    importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count).copy()
-    ended = np.setdiff1d(np.arange(count), mapper.stages.importons.living.read())
-    importons["radius"][ended] = 0.0
-    return importons
+def importons_of_segments(mapper, monkeypatch, count: int) -> list[np.ndarray]:
+    """(count,) importons of each segment that is to come, with radius 0 where the path has ended before."""
+    found = []
+    splat = DensityEstimator.splat
+
+    def watched(estimator, taking, timers) -> None:
+        importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count).copy()
+        importons["radius"][np.setdiff1d(np.arange(count), mapper.stages.importons.living.read())] = 0.0
+        found.append(importons)
+        splat(estimator, taking, timers)
+
+    monkeypatch.setattr(DensityEstimator, "splat", watched)
+    return found
 
 
 @pytest.mark.parametrize("route", ROUTES)
@@ -103,9 +110,10 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, center):
         mapper.build(diffuse_room(camera_path_length=segments))
         if center is not None:
             mapper.device_scene.center = np.array(center)
+        seen = importons_of_segments(mapper, monkeypatch, count)
         mapper.iterate()
         gathered.append(mapper.stages.density_estimator.sums.read(count)[:, 0])
-    importons = last_importons(mapper, count)  # those seen in the mirror
+    importons = seen[1]  # those seen in the mirror
     expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
     got = (gathered[1] - gathered[0]) * mapper.stages.density_estimator.sums.quantum
     assert (expected > 0).any(axis=1).sum() > 15
@@ -116,20 +124,13 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, center):
 def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     """First hits take what came straight or by the mirror; where the gathering rays end, all photons count."""
     mapper.build(diffuse_room(camera_path_length=2, use_final_gather=True, density_estimation=route))
-    count, first = 24 * 24, []
-    splat = DensityEstimator.splat
-
-    def watched(estimator, importons, timers) -> None:
-        if importons.raster is not None:
-            first.append(mapper.stages.importons.importons.read(IMPORTON.dtype, count))
-        splat(estimator, importons, timers)
-
-    monkeypatch.setattr(DensityEstimator, "splat", watched)
+    count = 24 * 24
+    seen = importons_of_segments(mapper, monkeypatch, count)
     mapper.iterate()
-    last = last_importons(mapper, count)
+    first, last = seen[:2]
     photons, wide = mapper.read_photons().ravel(), mapper.splat_radii[1]
-    assert (first[0]["gathers"][first[0]["radius"] > 0] == GatherFlag.GATHERS_BY_RAY).all()
-    parts = [brute_force(importons, photons, wide) for importons in (first[0], last)]
+    assert (first["gathers"][first["radius"] > 0] == GatherFlag.GATHERS_BY_RAY).all()
+    parts = [brute_force(importons, photons, wide) for importons in (first, last)]
     sums = mapper.stages.density_estimator.sums
     got = sums.read(count) * sums.quantum
     found = (last["gathers"][:, None] & GatherFlag.GATHERED_BY_RAY) != 0

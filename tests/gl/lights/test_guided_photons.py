@@ -13,7 +13,7 @@ from test_light_sources import LIGHTS, floor_scene
 
 from rppm_addon.integrator.common import iteration
 from rppm_addon.integrator.common.iteration import Iteration
-from rppm_addon.integrator.common.records import PHOTON_PATH, RAY, PhotonFlag
+from rppm_addon.integrator.common.records import PHOTON_CONTRIBUTED, PHOTON_PATH, RAY
 from rppm_addon.integrator.lights import guide
 from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Scene, World
 
@@ -115,10 +115,7 @@ def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
             for _ in range(32):
                 mapper.iterate()
             photons = mapper.read_photons()
-            useful += (
-                float(((photons["contributed"] != 0) & (photons["flags"] & PhotonFlag.ACTIVE != 0)).any(axis=0).mean())
-                / 4
-            )
+            useful += float((photons["depth"] & PHOTON_CONTRIBUTED != 0).any(axis=0).mean()) / 4
             means.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
         results[learning] = np.mean(means), np.std(means, ddof=1) / 2, useful, mapper.learning.wide_radius
         print(learning, results[learning])

@@ -10,7 +10,7 @@ from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import LIVING_PATHS_HEADER, PHOTON, RAY, PhotonFlag
+from rppm_addon.integrator.common.records import LIVING_PATHS_HEADER, RAY
 from rppm_addon.scene import (
     Aperture,
     DirectLight,
@@ -119,9 +119,7 @@ def outcome(mapper, scene: Scene) -> dict[str, np.ndarray]:
     result = {}
     for iteration in range(2):
         mapper.iterate()
-        photons = mapper.read_photons().copy()
-        photons[photons["flags"] & PhotonFlag.ACTIVE == 0] = PHOTON.zeros(1)[0]  # nobody reads those
-        result[f"photons {iteration}"] = photons.view(np.uint8)
+        result[f"photons {iteration}"] = mapper.read_photons().view(np.uint8)
         result[f"flux {iteration}"] = np.array(list(mapper.flux_balance().values()))
     state = dataclasses.asdict(mapper.state())
     state |= state.pop("passes")

@@ -58,7 +58,7 @@ def scattered(mapper, surface: Material) -> tuple[np.ndarray, np.ndarray]:
     mapper.iterate()
     first, second = mapper.read_photons()
     arrived = (first["flags"] & PhotonFlag.ACTIVE != 0) & (first["flags"] & PhotonFlag.ESCAPED == 0)
-    share = first["scattered_flux"][arrived] / first["flux"][arrived].mean(axis=0)
+    share = second["flux"][arrived] / first["flux"][arrived].mean(axis=0)
     return share.astype(np.float64), np.abs(second["direction"][arrived, 2])
 
 

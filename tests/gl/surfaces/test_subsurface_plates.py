@@ -111,7 +111,7 @@ def test_photons_leave_plates_as_viewers_see_them(mapper):
     lit &= np.abs(first["position"][:, 1]) < 0.8
     for side, method in zip((-1, 1), RADII, strict=True):
         chosen = lit & (first["position"][:, 0] * side > 0.0)
-        flux = first["scattered_flux"][chosen, 0].astype(float) / first["flux"][chosen, 0].mean(dtype=float)
+        flux = second["flux"][chosen, 0].astype(float) / first["flux"][chosen, 0].mean(dtype=float)
         upward = np.where(flux > 0.0, -second["direction"][chosen, 2].astype(float), 0.0)
         sums = np.stack([flux * (upward < 0.0), flux * (upward > 0.0)])
         moments = np.stack([sums, sums * abs(upward)], axis=1)

@@ -8,7 +8,7 @@ import pytest
 from support.full_scene import assert_same, full_scene
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
-from rppm_addon.integrator.common.records import PHOTON
+from rppm_addon.integrator.common.records import PHOTON_SEGMENT_SHIFT
 from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.scene import (
     Aperture,
@@ -24,6 +24,7 @@ from rppm_addon.scene import (
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
 from rppm_addon.scene.setting_info import settings_of
+from rppm_addon.scene.settings import MOST_PHOTONS, MOST_SEGMENTS
 from tools import settings_table
 
 
@@ -80,8 +81,9 @@ def test_what_another_version_saved_is_refused_in_one_line(tmp_path, monkeypatch
     ("name", "value"),
     [
         ("iterations", 0), ("photons", -1), ("photons", 1 << 23), ("alpha", 1.0), ("alpha", 0.0), ("radius_scale", 0.0),
-        ("camera_path_length", 0), ("photon_path_length", 65), ("cubemap_resolution", 100), ("seed", -1),
+        ("camera_path_length", 0), ("photon_path_length", 1026), ("cubemap_resolution", 100), ("seed", -1),
         ("specular_roughness", 1.1), ("radius_scale", float("nan")), ("time_limit", -1.0), ("filter_width", -1.0),
+        ("max_bounces", -1), ("transparent_max_bounces", 1025),
     ],
 )  # fmt: skip
 def test_bad_settings_are_named(name, value):
@@ -91,19 +93,26 @@ def test_bad_settings_are_named(name, value):
 
 
 @pytest.mark.parametrize(
-    ("asked", "segments", "size", "photons"),
+    ("asked", "size", "photons"),
     [
-        (0, 8, (256, 256), 65536), (0, 8, (16, 12), 8192), (0, 8, (480, 360), 172800), (0, 8, (1920, 1080), 262144),
-        (0, 12, (1920, 1080), 174762), (0, 64, (1920, 1080), 32768), (0, 1, (1920, 1080), 262144),
-        (7, 8, (256, 256), 7),
+        (0, (256, 256), 65536), (0, (16, 12), 8192), (0, (480, 360), 172800), (0, (1920, 1080), 262144),
+        (7, (256, 256), 7),
     ],
 )  # fmt: skip
-def test_automatic_photons_follow_the_pixels(asked, segments, size, photons):
-    settings = RenderSettings(photons=asked, photon_path_length=segments)
+def test_automatic_photons_follow_the_pixels(asked, size, photons):
+    settings = RenderSettings(photons=asked)
     assert settings.photons_for(*size) == photons
     assert Scene(Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), *size), settings=settings).photon_count == photons
-    if asked == 0:
-        assert photons * segments * PHOTON.size <= 1 << 27
+
+
+def test_paths_are_limited_as_a_whole_and_by_parts():
+    """The record of a photon tells so many apart."""
+    assert MOST_PHOTONS <= 1 << PHOTON_SEGMENT_SHIFT and MOST_SEGMENTS <= 1 << 32 - PHOTON_SEGMENT_SHIFT
+    settings = RenderSettings(max_bounces=5, photon_path_length=3)
+    assert (settings.camera_bounces, settings.photon_bounces) == (5, 2)
+    settings = RenderSettings(max_bounces=1024, transparent_max_bounces=1024, camera_path_length=8)
+    assert (settings.camera_bounces, settings.photon_bounces) == (7, 1024)
+    assert settings.photon_segments == MOST_SEGMENTS
 
 
 def test_default_settings_are_valid():
@@ -130,8 +139,8 @@ def test_settings_by_the_names_of_users():
         RenderSettings().with_properties({"iterations": 1})
     with pytest.raises(SettingsError, match="samples cannot be 'many'"):
         RenderSettings().with_properties({"samples": "many"})
-    with pytest.raises(SettingsError, match="^max_camera_bounces is 64; set it to 0 to 63$"):
-        RenderSettings().with_properties({"max_camera_bounces": 64}).validate()
+    with pytest.raises(SettingsError, match="^max_camera_bounces is 1025; set it to 0 to 1024$"):
+        RenderSettings().with_properties({"max_camera_bounces": 1025}).validate()
 
 
 @pytest.mark.parametrize(

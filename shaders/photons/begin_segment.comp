@@ -1,0 +1,16 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Photons of a segment lie behind those of the segments before, one for each path that lives.
+
+layout(local_size_x = 64) in;
+
+#include <BeginSegmentParameters>
+#include "common/living_paths.glsl"
+layout(std140, binding = 0) uniform Parameters { BeginSegmentParameters parameters; };
+layout(std430, binding = 0) buffer PhotonRange;
+
+void main() {
+    if (living_place() != 0u) return;
+    photon_first = parameters.segment == 0u ? 0u : photon_end;
+    photon_end = photon_first + living.count;
+}
