@@ -224,21 +224,25 @@ uint arriving_link(Arriving arriving, bool reflected) {
     return reflected && (light.flags & LIGHT_SHADOWLESS) != 0u ? 0u : light.link;
 }
 
-void main() {
-    uint index = living_path();
-    if (index == NO_PATH) return;
+void leave_no_light(uint index) {
     shadow_rays[index].maximum_distance = 0.0;
     contributions[index] = vec4(0.0);
     light_triangles[index] = NO_TRIANGLE;
+}
+
+void main() {
+    uint index = living_path();
+    if (index == NO_PATH) return;
+    leave_no_light(index);
     Ray ray = rays[index];
     Closure closure = closures[index];
     CameraPath path = camera_paths[index];
     uint flags = path.flags, bounces = bounces_of(path.depth);
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > parameters.camera_bounces) return;
     if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
-    bool gathered = (flags & PATH_GATHERED) != 0u;
-    bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
-                && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
+    bool gathered = (flags & PATH_GATHERED) != 0u, gathers = parameters.final_gather != 0u
+        && bounces < parameters.camera_bounces
+        && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
     vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_DIRECT_LIGHT << 24u));

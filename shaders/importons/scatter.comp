@@ -344,8 +344,7 @@ void main() {
     Closure closure = closures[index];
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
     radiances[index] += seen + seen_surface(path, start, closure);
-    float radius = vertex_radius(path, ray.direction, closure);
-    float caustic_radius = caustic_radius_of(index, radius, gathered);
+    float radius = vertex_radius(path, ray.direction, closure), most = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));
@@ -360,10 +359,10 @@ void main() {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
     }
-    float least_radius = gathered ? caustic_radius : radius;
+    float least_radius = gathered ? most : radius;
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
-                   bounces > parameters.camera_bounces ? 0.0 : caustic_radius, u_lobe.y,
+                   bounces > parameters.camera_bounces ? 0.0 : most, u_lobe.y,
                    (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
-    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, caustic_radius), choices,
+    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), choices,
           u_lobe.x, history);
 }

@@ -93,10 +93,7 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool fr
         MicrofacetLobe lobe = stored_lobe(index, k);
         shares[k] = largest(flux * lobe_albedo(lobe, lobe_cosine(lobe, arrival))) * scale;
     }
-    if ((closure.flags & CLOSURE_KEEPS_LIGHT) != 0u) {
-        diffuse = translucent = 0.0;
-        shares = vec3(0.0);
-    }
+    if ((closure.flags & CLOSURE_KEEPS_LIGHT) != 0u) diffuse = translucent = shares.x = shares.y = shares.z = 0.0;
     float total = diffuse + transparent + shares.x + shares.y + shares.z + translucent;
     float norm = max(total, 1.0);
     float u = next_random(random) * norm;
