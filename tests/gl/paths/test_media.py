@@ -8,7 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene, World
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene, Texels, World
 
 ABSORPTION = np.array([0.0, 0.5, 0.8])
 """1/m."""
@@ -242,3 +242,40 @@ def test_a_body_that_shines_lights_surfaces(renderer):
     expected = SHINING / 2.0 * passed(far * rays(), absorption) + shone(far * rays(), absorption)
     found = picture(renderer, scene).mean(axis=(0, 1))
     np.testing.assert_allclose(found, expected.mean(axis=(0, 1)), rtol=0.01)
+
+
+@pytest.mark.parametrize("side", [0, 1], ids=["below", "above"])
+def test_texels_lie_before_their_body(renderer, side):
+    """Light that comes to the faces of a body from outside is as if there were nothing inside."""
+    lamp = Light("lamp", LightKind.POINT, scenes.placed(0.0, 0.0, 3.0 if side else -3.0), np.full(3, 10.0))
+    mesh = box()
+    centers = mesh.positions[mesh.corner_vertices[mesh.triangle_corners]].mean(axis=1)
+    triangle = int(np.argmax(centers[:, 2] if side else -centers[:, 2]))
+    texels = Texels(
+        instance=0,
+        triangles=np.full((SIZE, SIZE), triangle, np.int32),
+        barycentrics=np.random.default_rng(4).uniform(0.05, 0.45, (SIZE, SIZE, 2)).astype(np.float32),
+        differentials=np.zeros((SIZE, SIZE, 4), np.float32),
+    )
+    camera = Camera(np.eye(4), (0.0, SIZE, 0.0, SIZE), SIZE, SIZE, orthographic=True, texels=texels)
+    surface = Lobe(LobeKind.DIFFUSE, color=(0.8, 0.8, 0.8))
+    filled, empty = (
+        picture(renderer, scene_of((0, at(0.0), CLEAR), body=body_of(surface, inside), camera=camera, lights=[lamp]))
+        for inside in (ABSORPTION, None)
+    )
+    assert (empty > 0.0).all()
+    np.testing.assert_allclose(filled, empty, rtol=1e-5)
+
+
+def test_texels_of_the_world_are_in_no_body(renderer):
+    texels = Texels(
+        instance=0,
+        triangles=np.zeros((SIZE, SIZE), np.int32),
+        barycentrics=np.full((SIZE, SIZE, 2), 0.3, np.float32),
+        differentials=np.zeros((SIZE, SIZE, 4), np.float32),
+        see_environment=True,
+    )
+    camera = Camera(np.eye(4), (0.0, SIZE, 0.0, SIZE), SIZE, SIZE, orthographic=True, texels=texels)
+    scene = scene_of((0, at(0.0), CLEAR), camera=camera)
+    scene.world = World(np.array([0.2, 0.4, 0.6]))
+    np.testing.assert_allclose(picture(renderer, scene), np.broadcast_to([0.2, 0.4, 0.6], (SIZE, SIZE, 3)), rtol=1e-5)
