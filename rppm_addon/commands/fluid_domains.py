@@ -12,7 +12,7 @@ from typing import Any
 logger = logging.getLogger(__name__)
 
 _temporary_folders: set[Path] = set()
-"""Of Blender, where a file with fluid domains is or was open."""
+"""Temporary folders of Blender, where a file with fluid domains is or was open."""
 
 
 def note_fluid_domains(bpy: ModuleType, frame: int) -> None:

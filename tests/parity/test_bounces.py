@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How often light bounces, and how many transparent surfaces it passes, with Cycles' limits."""
+"""Limits of bounces and of transparent surfaces, as Cycles has them."""
 
 import bpy
 import pytest

@@ -12,7 +12,7 @@ from mathutils.bvhtree import BVHTree
 from rppm_addon.scene import Camera, LightKind, Scene
 
 MOST_TRIANGLES = 3_000_000
-"""Of a scene that is looked at; for more the tree takes too long."""
+"""Triangles of a scene that is looked at, at most; for more the tree takes too long."""
 RAYS = (48, 36)
 """Rays across and down the picture that look for coincident faces."""
 NEAR = 2.0**-20
@@ -65,7 +65,7 @@ class _Surfaces:
 
 
 def suspects_of(scene: Scene) -> list[str]:
-    """What Cycles gets wrong in a scene, a line each; empty where nothing was found."""
+    """Things that Cycles gets wrong in a scene, a line each; empty where nothing was found."""
     if scene.triangle_count > MOST_TRIANGLES:
         return [f"not looked at: {scene.triangle_count} triangles"]
     surfaces = _Surfaces(scene)

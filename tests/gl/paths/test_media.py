@@ -13,7 +13,7 @@ from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Re
 ABSORPTION = np.array([0.0, 0.5, 0.8])
 """1/m."""
 SHINING = np.array([0.4, 0.7, 1.0])
-"""Of media, W/(m^3 sr)."""
+"""Emission of media, W/(m^3 sr)."""
 SIZE, HALF = 8, 0.3
 """Pixels of a side, and half of what they see at distance 1, m."""
 CLEAR, GLOW, WHITE = 0, 1, 2

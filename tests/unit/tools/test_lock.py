@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What make installs is pinned, package by package."""
+"""Packages that make installs are pinned, package by package."""
 
 import re
 import subprocess
