@@ -156,7 +156,10 @@ LightSample sample_cone_light(Light light, vec3 point, vec2 u) {
     bool sun = light.kind == LIGHT_SUN, soft = !sun && (light.flags & LIGHT_SOFT) != 0u;
     vec3 to_center = light.position - point;
     float distance2 = dot(to_center, to_center), radius2 = light.radius * light.radius, sine2 = radius2 / distance2;
-    if (!sun && !soft && distance2 <= radius2) return sample_from_within(light, to_center, u);
+    if (!sun && !soft && distance2 <= radius2) {
+        if (light.radius > 0.0) return sample_from_within(light, to_center, u);
+        return result;
+    }
     float one_minus_cosine = sun ? 1.0 - light.cosine_cone
                              : soft ? soft_light_cone(light, to_center) : sine2 / (1.0 + sqrt(1.0 - sine2));
     vec3 axis = sun ? light.normal

@@ -34,5 +34,5 @@ void main() {
         photon_paths[index].flags = query.flags;
     }
     rays[index].direction = viewer;
-    rays[index].maximum_distance = largest(flux) > 0.0 ? INFINITY_DISTANCE : 0.0;
+    rays[index].maximum_distance = largest(flux) > 0.0 ? query.reach : 0.0;
 }

@@ -43,6 +43,8 @@ const float SHARPEST_ALPHA = 0.05;
 // Where normals differ from the surface's, light that only grazes it may count for much: as many times at most.
 const float MOST_BY_NORMALS = 4.0;
 
+const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
+
 // from_light: at once, and not from the world. Huang's hair gets such light by shadow rays in Cycles, and little of
 // it by paths: where those see none, none comes.
 LobeSample of_fiber(LobeSample sampled, MicrofacetLobe lobe, vec3 geometric, vec3 arrival, bool from_light) {
@@ -161,9 +163,10 @@ float adjoint_correction(vec3 arrival, vec3 departure, vec3 geometric, vec3 shad
 // The ray is turned to look from where the photon goes, and waits where that does not matter (adjoint.comp). Of a
 // closure where one part stands for others, the view from there is no measure: the query then tells the part alone, for
 // those that go below the surface.
-void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags) {
+void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec3 arrival, uint path_flags,
+                         float reach) {
     bool matters = materials[closure.material].depends_on_view != 0u && (closure.flags & CLOSURE_CROWDED) == 0u;
-    AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, 0u, 0u);
+    AdjointQuery query = AdjointQuery(vec3(0.0), PART_NONE, scattering.ior, path_flags, reach, 0u);
     if (matters) {
         query.part = scattering.part;
         vec3 normal = unpack_unit_vector(closure.diffuse_normal);
@@ -202,8 +205,9 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
 }
 
 // The ray and the flux that a path goes on with, if it does; path_flags are those that it came with. counts: whether a
-// limit counts where it goes straight on.
-void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival, vec3 flux) {
+// limit counts where it goes straight on; left: how far the ray would have gone then.
+void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival, vec3 flux,
+           float left) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
                                             parameters.segment, index);
@@ -231,9 +235,10 @@ void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neigh
     if (scattering.transmitted) path_flags = cross_surface(path_flags, closure.material, closure_backfacing(closure));
     float offset = closures[index].ray_offset;
     vec3 origin = closure.position + (side > 0.0 ? offset : -offset) * geometric;
-    rays[index] = Ray(origin, closure.triangle, scattering.direction, INFINITY_DISTANCE);
+    float reach = straight ? max(left, NO_REACH) : INFINITY_DISTANCE;
+    rays[index] = Ray(origin, closure.triangle, scattering.direction, reach);
     if (parameters.has_adjoint_queries != 0u)
-        store_adjoint_query(index, closure, scattering, arrival, path_flags);
+        store_adjoint_query(index, closure, scattering, arrival, path_flags, reach);
     else photon_paths[index].flags = path_flags;
 }
 
@@ -279,6 +284,7 @@ void main() {
                            0u);
     photon_differentials[index].before = away;
     if (ends) return;
-    if (may_go_on(closure, depth)) go_on(index, closure, path_flags, counts, neighbors_known, arrival, flux);
+    float left = ray.maximum_distance - closure.distance;
+    if (may_go_on(closure, depth)) go_on(index, closure, path_flags, counts, neighbors_known, arrival, flux, left);
     else photon_paths[index].deposited = total(carried);
 }

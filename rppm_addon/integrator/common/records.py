@@ -237,11 +237,12 @@ the surface that turned the photon last. ``known`` is 0 where neighbors are not 
 StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
 
 ADJOINT_QUERY = Record(
-    "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", unused0="uint", unused1="uint"
+    "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", reach="float", unused="uint"
 )
 """How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
 closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
-the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on. A share of 0 is not compared."""
+the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on, and its ray ends at
+``reach``, meters. A share of 0 is not compared."""
 StorageBlock("AdjointQueries", "AdjointQuery adjoint_queries[];")
 
 PHOTON = Record(
