@@ -22,9 +22,10 @@ void main() {
     if (index == NO_PATH) return;
     Light light = lights[light_of(index)];
     const uint cut = LIGHT_SOFT | LIGHT_HOLDS_SURFACES;
+    bool is_cut = (light.flags & (cut | LIGHT_SHADOWLESS)) == cut;
     Ray ray = rays[index];
     Hit hit = hits[index];
-    if ((light.flags & cut) != cut || hit.triangle == NO_TRIANGLE || !(ray.maximum_distance > 0.0)) return;
+    if (!is_cut || hit.triangle == NO_TRIANGLE || !(ray.maximum_distance > 0.0)) return;
     vec3 point = ray.origin + hit.distance * ray.direction;
     float behind = soft_light_distance(light, point, -ray.direction) - hit.distance;
     if (!deep_cubemap_occluded(Ray(ray.origin, NO_TRIANGLE, -ray.direction, behind))) return;

@@ -6,8 +6,10 @@ import math
 import numpy as np
 import pytest
 from scenes import diffuse
+from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene
+from rppm_addon.integrator.lights import lights
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RayVisibility, RenderSettings, Scene
 from rppm_addon.self_test.meshes import placed, rectangle
 
 RADIUS, INTENSITY, ALBEDO = 0.5, 2.0, 0.8
@@ -55,3 +57,40 @@ def test_photons_bring_what_shadow_rays_find(renderer, kind):
     by_rays, by_photons = (picture.reshape(4, 8, 4, 8).mean(axis=(1, 3)) for picture in pictures)
     np.testing.assert_allclose(by_photons, by_rays, rtol=0.08)
     assert by_photons.mean() == pytest.approx(by_rays.mean(), rel=0.02)
+
+
+@pytest.mark.parametrize("looks_back", [False, True])
+def test_photons_end_within_a_sphere_behind_a_transparent_card_too(renderer, looks_back):
+    """Light from the far side of a sphere to the near one goes on from there as that of the near side alone."""
+    scene = _scene(DirectLight.PHOTONS, 0.4)
+    scene.lights[0].matrix = placed(0, 0, 1)
+    scene.materials.append(material("clear", Lobe(LobeKind.TRANSPARENT)))
+    for surface in scene.materials if looks_back else ():
+        graph = surface.graph
+        weight = graph.add("layer_weight", "facing", blend=0.5)
+        graph.surface = graph.add("mix_shader", "shader", fac=weight, shader=graph.surface, shader_001=graph.surface)
+    alone = _from_above(renderer, scene)
+    card = rectangle("card", (-0.3, -0.3, 0), (0.3, -0.3, 0), (0.3, 0.3, 0), (-0.3, 0.3, 0))
+    scene.meshes.append(card)
+    unseen = RayVisibility.ALL & ~RayVisibility.CAMERA
+    scene.instances.append(Instance(1, placed(0, 0, 1), [1], visibility=unseen))
+    assert _from_above(renderer, scene).mean() == pytest.approx(alone.mean(), rel=0.02)
+
+
+@pytest.mark.parametrize("casts_shadow", [True, False])
+def test_a_wall_hides_parts_of_the_disk_unless_the_lamp_has_no_shadows(mapper, monkeypatch, casts_shadow):
+    emitted = []
+    for holds in (True, False):
+        if not holds:
+            monkeypatch.setattr(lights, "holds_surfaces", lambda *_: False)
+        scene = _scene(DirectLight.PHOTONS, 1.0, soft_falloff=True, casts_shadow=casts_shadow)
+        scene.meshes.append(rectangle("wall", (0, -4, 0), (0, 4, 0), (0, 4, 4), (0, -4, 4)))
+        scene.instances.append(Instance(1, np.eye(4), [0]))
+        mapper.build(scene)
+        assert mapper.device_scene.lights.are_cut == holds
+        mapper.iterate()
+        emitted.append(mapper.flux_balance()["emitted"])
+    if casts_shadow:
+        assert 0.0 < emitted[0] < 0.99 * emitted[1]
+    else:
+        assert emitted[0] == emitted[1] > 0.0
