@@ -122,12 +122,14 @@ vec4 new_at(ivec2 pixel) {
     return is_finite(color.rgb) ? vec4(parameters.exposure * color.rgb, clamp(color.a, 0.0, 1.0)) : vec4(0.0);
 }
 
-// The brightest that is new around a pixel.
+// The brightest that is new around a pixel; light that is taken away counts alike.
 float brightest_around(ivec2 pixel) {
     ivec2 middle = pixel * new_size() / size_of(camera);
     float found = 0.0;
-    for (int k = 0; k < 9; ++k)
-        found = max(found, luminance(new_at(clamp(middle + ivec2(k % 3, k / 3) - 1, ivec2(0), new_size() - 1)).rgb));
+    for (int k = 0; k < 9; ++k) {
+        ivec2 near = clamp(middle + ivec2(k % 3, k / 3) - 1, ivec2(0), new_size() - 1);
+        found = max(found, abs(luminance(new_at(near).rgb)));
+    }
     return found;
 }
 
@@ -178,8 +180,10 @@ void main() {
             float most = specular ? parameters.most_specular_history : parameters.most_history;
             float history = found ? min(last.count / last.weight, most) : 0.0;
             vec4 before = last.color / last.weight;
-            if (specular && count > 0.0)
-                before.rgb *= min(1.0, BRIGHTER_KEPT * brightest_around(pixel) / max(luminance(before.rgb), 1e-20));
+            if (specular && count > 0.0) {
+                float brightness = max(abs(luminance(before.rgb)), 1e-20);
+                before.rgb *= min(1.0, BRIGHTER_KEPT * brightest_around(pixel) / brightness);
+            }
             color = count == 0.0 ? before : mix(color, before, history / (history + count));
             count += history;
         } else if (count == 0.0) {
