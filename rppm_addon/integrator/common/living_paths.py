@@ -74,8 +74,7 @@ class LivingPaths(BufferSet):
     def begin(self, most: int) -> None:
         """List none, for a program to list up to so many (shaders/living_paths/kept.glsl)."""
         self.require(most)
-        self.most = self._bound = most
-        self._asked = 0
+        self.most = most
         self._begin(self._lists[0], 0, (0, 0, 1))
 
     def keep(self, rays: moderngl.Buffer) -> None:
@@ -86,8 +85,7 @@ class LivingPaths(BufferSet):
     def take(self, paths: "LivingPaths", rays: moderngl.Buffer) -> None:
         """List those of another list's paths whose rays (RAY, by path) are active."""
         self.require(paths.most)
-        self.most = self._bound = paths.most
-        self._asked = 0
+        self.most = paths.most
         self._keep_of(paths, self._lists[0], rays)
 
     def _keep_of(self, paths: "LivingPaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
@@ -116,7 +114,8 @@ class LivingPaths(BufferSet):
         return self._context.is_software and self.read_count() == 0
 
     def bound(self, segment: int) -> int:
-        """No fewer paths than are listed in a segment; 0 once it is known that none is. To be asked in every segment.
+        """No fewer paths than a filled list has in a segment; 0 once it is known that it has none. To be asked in every
+        segment.
 
         A driver on the processor tells exactly, a GPU every few segments (SEGMENTS_AT_ONCE).
         """

@@ -39,6 +39,9 @@ Record(
 
 Record("PassSurfaceParameters", passed="uint", transparent_max_bounces="uint")
 
+_SURFACES_AT_ONCE = 16
+"""A GPU is asked whether any shadow ray passes surfaces still this seldom, as it has to be waited for."""
+
 
 def _told_pixels(sizes: StageSizes) -> int:
     return max(split_pixels(sizes), grouped_pixels(sizes))
@@ -137,7 +140,7 @@ class DirectLight(BufferSet):
         passing.take(self.living_rays, rays.buffer)
         most = context.settings.transparent_max_bounces
         for surfaces in range(most + 1):
-            if not passing.bound(surfaces):
+            if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return
             context.deep_cubemap.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
             met = {
@@ -160,6 +163,8 @@ class DirectLight(BufferSet):
             }
             passing.run(self._pass, passed, {"passed": surfaces, "transparent_max_bounces": most})
             passing.keep(rays.buffer)
+            if passing.known_empty:
+                return
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
