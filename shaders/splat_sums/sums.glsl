@@ -27,5 +27,10 @@ uvec2 whole_quanta(float signed_quanta) {
     return signed_quanta < 0.0 ? uvec2(~words.x + 1u, ~words.y + (words.x == 0u ? 1u : 0u)) : words;
 }
 
-// A sum of three channels from its words.
-vec3 quanta_of(uvec3 low, uvec3 high) { return vec3(ivec3(high)) * WORD + vec3(low); }
+// A sum of three channels from its words: by magnitude, since next to 2^32 floats do not count in ones.
+vec3 quanta_of(uvec3 low, uvec3 high) {
+    uvec3 negative = high >> 31u, turned = negative * 0xffffffffu;
+    low = (low ^ turned) + negative;
+    high = (high ^ turned) + negative * uvec3(equal(low, uvec3(0u)));
+    return (vec3(high) * WORD + vec3(low)) * (1.0 - 2.0 * vec3(negative));
+}

@@ -14,6 +14,8 @@ from busy_scenes import (
     busy,
     wide,
 )
+from support.floor import floor_scene
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.common.records import PHOTON_CONTRIBUTED, PhotonFlag
@@ -111,3 +113,19 @@ def test_nothing_is_tried_where_no_unit_rasterizes(mapper, monkeypatch, undecide
     mapper.build(busy())
     mapper.iterate()
     assert mapper.density_estimation is DensityEstimation.GRID
+
+
+@pytest.mark.parametrize("route", [DensityEstimation.RASTERIZED, DensityEstimation.GRID])
+def test_light_that_is_taken_away_has_the_bits_of_light(mapper, route):
+    """On a floor so dark that sums are few quanta."""
+    pictures = []
+    for sign in (1.0, -1.0):
+        scene = floor_scene()
+        scene.materials[0] = material("dark", Lobe(LobeKind.DIFFUSE, color=(1e-4, 1e-5, 1e-6)))
+        scene.lights[0].strength = sign * scene.lights[0].strength
+        scene.settings = scene.settings.with_values(direct_light="PHOTONS", density_estimation=route)
+        mapper.build(scene)
+        mapper.iterate()
+        pictures.append(mapper.film.read_radiance()[..., :3])
+    assert pictures[0].any()
+    np.testing.assert_array_equal(-pictures[1], pictures[0])
