@@ -14,7 +14,7 @@ from typing import Any
 logger = logging.getLogger(__name__)
 
 _temporary_folders: set[Path] = set()
-"""Of Blender, where a file with fluid domains is or was open."""
+"""Blender's temporary folders while a file with fluid domains is or was open."""
 _named: set[tuple[str, str]] = set()
 """Files and their domains that a warning has named."""
 

@@ -25,8 +25,8 @@ os._exit(0)
 
 @pytest.mark.parametrize("kind", ["GAS", pytest.param("LIQUID", marks=pytest.mark.long)])
 def test_a_fluid_domain_is_rendered_with_status_0(tmp_path, rppm, kind):
-    """The mesh of a gas domain is not shown, as in Cycles: the gray world is all there is. As it is not evaluated, frames
-    after its first one are rendered as well."""
+    """The mesh of a gas domain is not shown, as in Cycles: the gray world is all there is. As the domain is not
+    evaluated, frames after its first one are rendered as well."""
     blend, exr = tmp_path / "fluid.blend", tmp_path / "fluid.exr"
     subprocess.run([sys.executable, "-c", WRITE, kind, blend], check=True, capture_output=True, timeout=60)
     frame = {"GAS": "4", "LIQUID": "1"}[kind]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How often light bounces, and how many transparent surfaces it passes, with Cycles' limits."""
+"""Bounces of light, and transparent surfaces that it passes, with Cycles' limits."""
 
 import bpy
 import pytest

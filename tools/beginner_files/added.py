@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the menus of Add give, each with its defaults, and primitives shaded in each way."""
+"""Objects that the menus of Add give, each with its defaults, and primitives shaded in each way."""
 
 import functools
 

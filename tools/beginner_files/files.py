@@ -9,7 +9,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 FILES: dict[str, Callable[[], None]] = {}
-"""What makes each file out of the startup scene, by name."""
+"""Functions that make each file out of the startup scene, by name."""
 SIZE = (64, 48)
 """Pixels of the pictures."""
 

@@ -200,7 +200,7 @@ class _Tree:
         return b
 
     def chain(self, *kinds: str) -> bpy.types.Node:
-        """What is given, through nodes one after the other."""
+        """The geometry that is given, through nodes one after the other."""
         made = self.given
         for kind in kinds:
             made = self.link(made, self.node(kind))
@@ -241,7 +241,7 @@ CHAINS: dict[str, Callable[[_Tree], bpy.types.Node]] = {
 
 
 def _chain(give: Callable[[_Tree], bpy.types.Node]) -> None:
-    """What tutorials do: scatter, curves to tubes, smooth, instances."""
+    """Trees of tutorials: scatter, curves to tubes, smooth, instances."""
     tree = _Tree()
     tree.link(give(tree), tree.output)
 

@@ -20,7 +20,7 @@ class Effort:
     resolution: tuple[int, int] | None
     """Width and height in pixels; None is the file's own."""
     samples: int
-    """Of RPPM's pictures."""
+    """Samples of RPPM's pictures."""
     cycles_samples: int
     seconds: float
     """Longest time of a picture."""

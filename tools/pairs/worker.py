@@ -31,7 +31,7 @@ from .suspects import suspects_of
 
 STAGE = "@stage "
 SEEDS = (1, 2)
-"""Of each renderer's two pictures, which tell its noise."""
+"""Seeds of each renderer's two pictures, which tell its noise."""
 
 
 class _Follower(RenderObserver):
