@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects of whose faces nothing comes to be rendered, so that none is lost in silence."""
+"""Objects whose modifiers leave no faces to be rendered, so that none is lost in silence."""
 
 import bpy
 

@@ -358,7 +358,7 @@ class ObjectPass:
         kind.learned = True
 
     def _shows_no_mesh(self, source: bpy.types.Object, is_own: bool) -> bool:
-        """Whether nothing of a mesh is to be rendered. is_own: it is the object's, none that nodes of geometry made."""
+        """True where nothing of a mesh is rendered. is_own: it is the object's, none that nodes of geometry made."""
         if is_own and is_gas_domain(source):
             self._report.warn(
                 f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the '
