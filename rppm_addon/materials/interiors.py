@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from ..scene.node_graphs import NodeGraph
 from .emitted import is_positive, light_variation, reachable
+from .nodes import KINDS
 
 _ABSORBING = {"volume_absorption": "density"}
 _EMITTING = {"emission": "strength", "background": "strength"}
@@ -30,6 +31,8 @@ class Interior:
         """The medium that a graph of a volume makes."""
         if graph is None:
             return cls()
+        if any(node.kind not in KINDS for node in graph.nodes):
+            return cls(graph)  # which whoever compiles it reports
         absorption, emission = _part(graph, _ABSORBING), _part(graph, _EMITTING)
         return cls(absorption, emission, bool(absorption or emission) and bool(light_variation(graph)))
 
