@@ -13,9 +13,9 @@ from pathlib import Path
 import bpy
 
 INNER, WALL, BOTTOM, HEIGHT, SURFACE = 0.036, 0.003, 0.01, 0.1, 0.07
-"""Sizes of the glass: inner radius, walls, bottom and height; and where the drink ends, m."""
+"""Inner radius, walls, bottom and height of the glass, and the height at which the drink ends, m."""
 WAYS = {"gap": -0.0004, "shared": 0.0, "overlap": 0.0015}
-"""Depth to which the drink reaches beyond the glass's inner surface, m."""
+"""Distances by which the drink reaches beyond the glass's inner surface, m."""
 
 
 def material(name, shader, inputs, absorption=None):

@@ -19,7 +19,7 @@ from ..scene import Scene
 from ..scene.errors import RppmError, SceneError, SettingsError
 from ..session.observers import RenderObserver, observing
 from .data_paths import set_data_path
-from .fluid_domains import note_fluid_domains
+from .fluid_domains import gas_left_out, note_fluid_domains
 from .freestyle import add_strokes
 from .picture_set import PictureSet
 
@@ -197,7 +197,8 @@ def _opened(request: BlendRequest, show_output: bool) -> Iterator[tuple]:
 
 def _open(bpy: ModuleType, path: Path) -> None:
     try:
-        bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
+        with gas_left_out(bpy):
+            bpy.ops.wm.open_mainfile(filepath=str(path.resolve()), load_ui=False, use_scripts=False)
     except RuntimeError as error:
         raise SceneError(f"{path} cannot be opened by Blender {bpy.app.version_string}: {_one_line(error)}") from error
 

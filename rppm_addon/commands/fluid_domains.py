@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fluid domains in Blender as a module, which aborts as it ends, and where it evaluates a simulation again."""
 
+import contextlib
 import logging
 import os
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -12,17 +14,40 @@ from typing import Any
 logger = logging.getLogger(__name__)
 
 _temporary_folders: set[Path] = set()
-"""Temporary folders of Blender, where a file with fluid domains is or was open."""
+"""Blender's temporary folders while a file with fluid domains is or was open."""
+_named: set[tuple[str, str]] = set()
+"""Files and their domains that a warning has named."""
+
+
+@contextlib.contextmanager
+def gas_left_out(bpy: ModuleType) -> Iterator[None]:
+    """A with block in which files are opened without evaluating their gas domains, as nothing of these is rendered and
+    Blender's module aborts as it frees one that it has evaluated after its first frame."""
+
+    @bpy.app.handlers.persistent
+    def leave_out(*_: object) -> None:
+        for source in bpy.data.objects:
+            for modifier in _domains(source):
+                if modifier.domain_settings.domain_type == "GAS":
+                    modifier.show_render = modifier.show_viewport = False
+
+    bpy.app.handlers.load_post.append(leave_out)
+    try:
+        yield
+    finally:
+        bpy.app.handlers.load_post.remove(leave_out)
 
 
 def note_fluid_domains(bpy: ModuleType, frame: int) -> None:
-    """Take note of the fluid domains of the open file before it is evaluated at a frame; a warning names those of which
-    Blender's simulation may abort there, as nothing can once it has."""
+    """Take note of the fluid domains of the open file before it is evaluated at a frame; a warning names once each of
+    liquid of which Blender's simulation may abort there, as nothing can once it has."""
     domains = [(source.name, modifier.domain_settings) for source in bpy.data.objects for modifier in _domains(source)]
     if domains:
         _temporary_folders.add(Path(bpy.app.tempdir))
     for name, settings in domains:
-        if frame > settings.cache_frame_start:
+        key = bpy.data.filepath, name
+        if settings.domain_type != "GAS" and frame > settings.cache_frame_start and key not in _named:
+            _named.add(key)
             logger.warning(
                 'Object "%s": Blender as a module may abort as it evaluates this fluid domain after frame %d; if it '
                 "does, render the file in Blender itself (blender -b), or delete the domain",

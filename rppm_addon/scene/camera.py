@@ -121,7 +121,7 @@ class Camera:
 
     @property
     def is_sheared(self) -> bool:
-        """Whether its axes are not at right angles."""
+        """True where the axes are not at right angles."""
         axes = self.matrix[:3, :3] / np.linalg.norm(self.matrix[:3, :3], axis=0)
         return bool(np.abs(axes.T @ axes - np.eye(3)).max() > SHEARED)
 

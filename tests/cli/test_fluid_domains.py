@@ -3,11 +3,14 @@
 
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 pytest.importorskip("bpy", reason="needs the bpy wheel")
 
+from rppm_addon.commands import fluid_domains  # noqa: E402
 from rppm_addon.pictures import read_exr  # noqa: E402
 
 WRITE = """
@@ -25,10 +28,13 @@ os._exit(0)
 
 @pytest.mark.parametrize("kind", ["GAS", pytest.param("LIQUID", marks=pytest.mark.long)])
 def test_a_fluid_domain_is_rendered_with_status_0(tmp_path, rppm, kind):
-    """The mesh of a gas domain is not shown, as in Cycles: the gray world is all there is."""
+    """The mesh of a gas domain is not shown, as in Cycles: the gray world is all there is. As the domain is not
+    evaluated, frames after its first one are rendered as well."""
     blend, exr = tmp_path / "fluid.blend", tmp_path / "fluid.exr"
     subprocess.run([sys.executable, "-c", WRITE, kind, blend], check=True, capture_output=True, timeout=60)
-    status, output, errors = rppm("render", blend, "-o", exr, "--samples", "1", "--resolution", "32x24")
+    frame = {"GAS": "4", "LIQUID": "1"}[kind]
+    options = ("--samples", "1", "--resolution", "32x24", "--frame", frame)
+    status, output, errors = rppm("render", blend, "-o", exr, *options)
     assert status == 0 and "fluid.exr" in output, errors
     combined = read_exr(exr).combined[..., :3]
     assert (combined.std() < 1e-6) == (kind == "GAS")
@@ -42,3 +48,32 @@ def test_a_domain_that_may_abort_is_named_before(tmp_path, rppm):
     subprocess.run([sys.executable, "-c", WRITE, "LIQUID", blend], check=True, capture_output=True, timeout=60)
     _, _, errors = rppm("render", blend, "-o", tmp_path / "fluid.exr", "--samples", "1", "--frame", "4")
     assert 'rppm: Object "Cube": Blender as a module may abort' in errors
+
+
+def test_a_domain_of_liquid_is_named_once(monkeypatch, caplog):
+    """In an animation, from the first frame on at which it may abort."""
+    monkeypatch.setattr(fluid_domains, "_temporary_folders", set())
+    monkeypatch.setattr(fluid_domains, "_named", set())
+    objects = [
+        SimpleNamespace(
+            name=kind,
+            modifiers=[
+                SimpleNamespace(
+                    type="FLUID",
+                    fluid_type="DOMAIN",
+                    domain_settings=SimpleNamespace(domain_type=kind, cache_frame_start=1),
+                )
+            ],
+        )
+        for kind in ("GAS", "LIQUID")
+    ]
+    bpy = SimpleNamespace(
+        data=SimpleNamespace(objects=objects, filepath="fluid.blend"), app=SimpleNamespace(tempdir="/tmp/blender_1/")
+    )
+    counts = []
+    for frame in (1, 2, 3):
+        fluid_domains.note_fluid_domains(bpy, frame)
+        counts.append(len(caplog.records))
+    assert counts == [0, 1, 1]
+    assert '"LIQUID"' in caplog.text
+    assert fluid_domains._temporary_folders == {Path("/tmp/blender_1/")}

@@ -250,4 +250,4 @@ CASES = {
     "mesh of nodes": lambda case: multiplied(case, "MESHES", "box"),
     **{mode: lambda case: painted(case, case) for mode in ("SCULPT", "VERTEX_PAINT", "WEIGHT_PAINT", "TEXTURE_PAINT")},
 }
-"""Functions that make a scene, by its name, which it is called with."""
+"""Functions that make a scene, by its name, which they are called with."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limits of bounces and of transparent surfaces, as Cycles has them."""
+"""Bounces of light, and transparent surfaces that it passes, with Cycles' limits."""
 
 import bpy
 import pytest

@@ -23,7 +23,7 @@ def object_mode():
 
 @pytest.mark.parametrize("case", [pytest.param(case, marks=() if case in FEW else pytest.mark.long) for case in CASES])
 def test_objects_that_are_edited(renderer, case):
-    """A surface that glows by its normal shows shape and modifiers."""
+    """Objects that glow by their normals show shape and modifiers."""
     CASES[case](case)
     reference = render_cycles(samples=64)
     pictures = render_final(samples=32)

@@ -99,7 +99,7 @@ CUT_LAMPS = {
 @pytest.mark.parametrize("mode", ["RAYS", pytest.param("PHOTONS", marks=pytest.mark.long)])
 @pytest.mark.parametrize("name", CUT_LAMPS)
 def test_lamp_half_in_a_floor(renderer, name, mode):
-    """Light that the walls get of it, and what comes from the floor within its radius, in a closed room."""
+    """Light that the walls get of it, and that comes from the floor within its radius, in a closed room."""
     new_scene()
     gray = material(DIFFUSE, Color=0.5)
     box((2.0, 2.0, 2.0), gray)

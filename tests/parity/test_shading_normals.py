@@ -48,7 +48,7 @@ ROUND = CLOSURES | {
     "toon": lambda: toon("GLOSSY"),
 }
 NORMALS = ((-0.4, False), (0.1, False), (0.4, False), (-0.4, True), (0.1, True), (0.4, True))
-"""Tilt of normals behind a face that looks at the camera, and whether that is seen from behind."""
+"""Angles by which normals lean behind a face that looks at the camera, which sees some from behind."""
 
 
 def leaf(surface: bpy.types.Material, x: float, z: float, tilt: float, backward: bool) -> None:

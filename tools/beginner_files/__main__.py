@@ -2,6 +2,7 @@
 """Writes the files: ``python -m tools.beginner_files FOLDER [NAME ...]``."""
 
 import os
+import subprocess
 import sys
 import traceback
 from pathlib import Path
@@ -9,15 +10,19 @@ from pathlib import Path
 import bpy
 
 from . import added, arranged, lit, modified, settings, shaded, simulated, textured  # noqa: F401 (they list their files)
-from .files import FILES
+from .files import ALONE, FILES
 
 
 def main() -> int:
     """Write all files, or those that are named; returns how many could not be made."""
-    folder, names = Path(sys.argv[1]).resolve(), sys.argv[2:]
+    folder, names = Path(sys.argv[1]).resolve(), sys.argv[2:] or list(FILES)
     folder.mkdir(parents=True, exist_ok=True)
     failures = 0
-    for name in names or FILES:
+    for name in names:
+        if name in ALONE and len(names) > 1:
+            alone = [sys.executable, "-m", __spec__.name, str(folder), name]
+            failures += subprocess.run(alone).returncode != 0
+            continue
         try:
             FILES[name]()
             bpy.ops.wm.save_as_mainfile(filepath=str(folder / f"{name}.blend"), check_existing=False)

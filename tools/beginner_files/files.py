@@ -10,15 +10,19 @@ from mathutils import Matrix, Vector
 
 FILES: dict[str, Callable[[], None]] = {}
 """Functions that make each file out of the startup scene, by name."""
+ALONE: set[str] = set()
+"""Names of files that a process of their own makes, as Blender's module aborts as it goes on to another file."""
 SIZE = (64, 48)
 """Pixels of the pictures."""
 
 
-def file(name: str, make: Callable[[], Any]) -> None:
-    """Put a file on the list."""
+def file(name: str, make: Callable[[], Any], alone: bool = False) -> None:
+    """Put a file on the list. alone: see ALONE."""
     if name in FILES:
         raise ValueError(f"two files are named {name}; give one of them another name")
     FILES[name] = make
+    if alone:
+        ALONE.add(name)
 
 
 def start(with_cube: bool = False) -> bpy.types.Scene:

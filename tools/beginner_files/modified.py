@@ -241,7 +241,7 @@ CHAINS: dict[str, Callable[[_Tree], bpy.types.Node]] = {
 
 
 def _chain(give: Callable[[_Tree], bpy.types.Node]) -> None:
-    """Setups of tutorials: scatter, curves to tubes, smooth, instances."""
+    """Trees of tutorials: scatter, curves to tubes, smooth, instances."""
     tree = _Tree()
     tree.link(give(tree), tree.output)
 

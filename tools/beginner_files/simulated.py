@@ -69,7 +69,7 @@ def _quick(kind: str) -> None:
 
 
 for kind in ("fur", "explode", "smoke", "liquid"):
-    file(f"quick_{kind}", functools.partial(_quick, kind))
+    file(f"quick_{kind}", functools.partial(_quick, kind), alone=kind in {"smoke", "liquid"})
 
 
 def _physics(kind: str) -> None:

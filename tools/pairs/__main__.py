@@ -64,7 +64,7 @@ def stage_of(log: Path) -> str:
 
 
 def finished(target: Path) -> dict | None:
-    """Findings of an earlier run of a file, or None where that is not complete."""
+    """The report of an earlier run about a file, or None where that is not complete."""
     report = Path(f"{target}.json")
     if not report.exists():
         return None
@@ -116,13 +116,13 @@ def write_sheets(folder: Path, reports: dict[str, dict]) -> None:
 
 
 def difference(report: dict) -> float:
-    """Distance of a pair, to sort by: FLIP above noise and blocks that are off."""
+    """The distance of a pair's pictures, to sort by: FLIP above noise and blocks that are off."""
     figures = report["figures"]
     return figures["flip"] - figures["flip_of_noise"] + figures["off"]
 
 
 def parsed() -> argparse.Namespace:
-    """Options of the command line."""
+    """The options of the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], prog="python -m tools.pairs")
     parser.add_argument("scenes", type=Path, help="a folder of .blend files")
     parser.add_argument("names", nargs="*", help="files without .blend; none given: all in the folder")

@@ -12,7 +12,7 @@ from .figures import exposure_of, shown_picture
 LABEL = 12
 """Height of a line of text below a picture, pixels."""
 GAIN = 2.5
-"""Gain of the difference, gray being none."""
+"""Contrast of the difference, gray being none."""
 
 
 def pair_image(ours: np.ndarray, theirs: np.ndarray) -> PIL.Image.Image:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Things that a .blend file lacks to be rendered beside Cycles, added to the open file.
+"""Additions to the open .blend file of what it lacks to be rendered beside Cycles.
 
 A file without a camera gets one that sees all surfaces, and a sun where it has no lamp. Of a library of materials, a
 file whose surfaces use the fewest of what it has, BALLS materials are drawn, always the same, and put on balls above a

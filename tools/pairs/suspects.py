@@ -12,7 +12,7 @@ from mathutils.bvhtree import BVHTree
 from rppm_addon.scene import Camera, LightKind, Scene
 
 MOST_TRIANGLES = 3_000_000
-"""Triangles of a scene that is looked at, at most; for more the tree takes too long."""
+"""Triangles of a scene that is looked at; for more the tree takes too long."""
 RAYS = (48, 36)
 """Rays across and down the picture that look for coincident faces."""
 NEAR = 2.0**-20
@@ -42,7 +42,7 @@ class _Surfaces:
         self.tree = BVHTree.FromPolygons(flat.tolist(), triangles, all_triangles=True)
 
     def contains(self, triangle: int, point: np.ndarray) -> bool:
-        """Whether a point on a triangle's plane is well inside it."""
+        """True where a point on a triangle's plane is well inside it."""
         a, b, c = self.corners[triangle]
         normal = np.cross(b - a, c - a)
         square = normal @ normal
@@ -65,7 +65,7 @@ class _Surfaces:
 
 
 def suspects_of(scene: Scene) -> list[str]:
-    """Things that Cycles gets wrong in a scene, a line each; empty where nothing was found."""
+    """Faults of Cycles in a scene, a line each; empty where nothing was found."""
     if scene.triangle_count > MOST_TRIANGLES:
         return [f"not looked at: {scene.triangle_count} triangles"]
     surfaces = _Surfaces(scene)

@@ -306,3 +306,15 @@ def test_meshes_without_faces_are_as_they_are_meant(scene):
     points.modifiers.new("Points", "NODES").node_group = tree
     exported = export(scene)
     assert exported.warnings == [] and len(exported.instances) == 4
+
+
+def test_a_mesh_that_nodes_make_a_volume_of_is_named_once(scene):
+    source = add_mesh(scene, "Cloud")
+    tree = bpy.data.node_groups.new("Cloud", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    cube, after = tree.nodes.new("GeometryNodeVolumeCube"), tree.nodes.new("NodeGroupOutput")
+    cube.inputs["Density"].default_value = 1.0
+    tree.links.new(cube.outputs[0], after.inputs[0])
+    source.modifiers.new("Cloud", "NODES").node_group = tree
+    (warning,) = export(scene).warnings
+    assert 'Object "Cloud": volumes are not rendered yet' in warning

@@ -88,6 +88,13 @@ def test_the_scene_s_border_is_that_of_the_camera_s_frame(camera, scene, kind):
     np.testing.assert_allclose(view.crop, export_camera(scene, depsgraph).crop, atol=1)
 
 
+def test_a_view_without_a_direction_is_an_error(camera):
+    context, depsgraph = context_of(camera)
+    context.region_data.view_matrix = Matrix.Diagonal((1.0, 1.0, 0.0, 1.0))
+    with pytest.raises(SceneError, match="scale of 0"):
+        export_view(context, depsgraph)
+
+
 def test_a_border_outside_of_the_view_is_an_error(camera, scene):
     scene.render.use_border = True
     scene.render.border_min_x, scene.render.border_max_x = 0.0, 0.1

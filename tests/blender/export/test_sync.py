@@ -619,7 +619,7 @@ def assign() -> None:
 
 @pytest.mark.parametrize("names", [("Cube",), ("Cube", "Other"), ("Other", "Cube")])
 def test_edit_mode_is_followed(synced, names):
-    """Edits of one object or several, whose mesh another object has as well."""
+    """One object or several are in it, whose mesh another object has as well."""
     steps = (
         lambda: in_edit_mode(*names), pull, move, move_twin, paint, cut, ask_for_generated, pull, subdivide, assign,
         in_object_mode, edit_mesh, lambda: in_edit_mode(*names), pull, in_object_mode,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Things that tools/pairs adds to files that cannot be rendered as they are."""
+"""Additions of tools/pairs to files that cannot be rendered as they are."""
 
 import bpy
 from bpy_extras.object_utils import world_to_camera_view

@@ -53,6 +53,18 @@ def test_each_view_has_the_camera_that_blender_gives(stereo, persistent):
     assert left.window[0] + left.window[1] > 0.0  # toward the middle
 
 
+@pytest.mark.parametrize("views", ["STEREO_3D", "MULTIVIEW"])
+def test_both_eyes_of_what_is_no_camera_are_where_it_is(stereo, views):
+    """An object without data, which Blender would crash on if asked for its eyes."""
+    empty = bpy.data.objects.new("Empty", None)
+    empty.location = 0.0, 0.0, 5.0
+    stereo.collection.objects.link(empty)
+    stereo.camera, stereo.render.views_format = empty, views
+    for scene in taken():
+        np.testing.assert_allclose(scene.camera.matrix[:3, 3], (0.0, 0.0, 5.0), atol=1e-6)
+        assert scene.camera.window[0] == pytest.approx(-scene.camera.window[1])
+
+
 def test_views_move_as_the_camera_does(stereo):
     camera = stereo.camera
     for frame, x in ((1, 0.0), (3, 2.0)):

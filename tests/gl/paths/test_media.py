@@ -25,6 +25,8 @@ def body_of(surface: Lobe, absorption: np.ndarray | None = ABSORPTION, glow: np.
 
 
 TRANSPARENT = Lobe(LobeKind.TRANSPARENT)
+NEXT_TO_NOTHING = np.full(3, 1e-12)
+"""Absorption, 1/m, that leaves all light, of a medium that stops shadow rays as every other does."""
 GLASS = Lobe(LobeKind.GLASS, ior=1.0)
 
 
@@ -103,7 +105,7 @@ def test_light_of_a_lamp_within_a_body(renderer, mode):
 
     made = [
         scene_of((0, at(0.0, 4.0), CLEAR), (1, at(-1.0, 0.5), WHITE), body=body, lights=[lamp], **settings)
-        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, None))
+        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, NEXT_TO_NOTHING))
     ]
     ratio = picture(renderer, made[0]) / picture(renderer, made[1])
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
@@ -118,7 +120,7 @@ def test_light_of_a_lamp_outside_a_body(renderer):
     settings = {"photons": 40000, "iterations": 4, "use_final_gather": False}
     made = [
         scene_of((0, at(-2.5, 2.0), CLEAR), (1, at(-1.0, 0.5), WHITE), body=body, lights=[lamp], **settings)
-        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, None))
+        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, NEXT_TO_NOTHING))
     ]
     within, plain = (picture(renderer, scene) for scene in made)
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
@@ -137,10 +139,10 @@ def test_light_through_a_body_in_a_body(renderer, surface):
     within, plain = (
         scene_of((0, at(0.0, 4.0), CLEAR), (0, at(-0.5, 0.25), 3), (1, at(-1.0, 0.5), WHITE),
                  body=body_of(surface, absorption), lights=[lamp], **settings)
-        for absorption in (ABSORPTION, None)
+        for absorption in (ABSORPTION, NEXT_TO_NOTHING)
     )  # fmt: skip
     within.materials.append(material("other", surface, absorption=other))
-    plain.materials.append(material("other", surface))
+    plain.materials.append(material("other", surface, absorption=NEXT_TO_NOTHING))
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
     to_lamp = np.sqrt(4 + x**2 + x[:, None] ** 2)[..., None]
     seen = (np.abs(x) < 0.2) & (np.abs(x[:, None]) < 0.2)  # rays that go through top and bottom
@@ -155,7 +157,7 @@ def test_a_tinted_bulb(renderer):
 
     made = [
         scene_of((2, at(0.5, 0.4), CLEAR), (1, at(-1.0), WHITE), body=body, lights=[lamp], **settings)
-        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, None))
+        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, NEXT_TO_NOTHING))
     ]
     ratio = picture(renderer, made[0]) / picture(renderer, made[1])
     np.testing.assert_allclose(ratio, np.broadcast_to(passed(0.4), ratio.shape), rtol=2e-3)

@@ -119,10 +119,10 @@ def lathe(surface: bpy.types.Material, profile: list, name: str, columns: int = 
 
 
 WALL, INNER = 0.04, 0.56
-"""Thickness of a tumbler, and its inner radius, m."""
+"""Thickness and inner radius of a tumbler, m."""
 LIQUIDS = {"with a gap": -0.005, "overlapping": 0.5 * WALL}
-"""Depth to which a drink reaches into the glass, m. Where it ends at the glass's own faces, Cycles' rays that leave one
-of two faces meet the other, and RPPM's do not: neither is right (docs/materials.md)."""
+"""Distances by which a drink reaches into the glass, m. Where it ends at the glass's own faces, Cycles' rays that leave
+one of two faces meet the other, and RPPM's do not: neither is right (docs/materials.md)."""
 
 
 def tumbler(reach: float) -> None:

@@ -49,17 +49,25 @@ NOT_RENDERED = """
 ## Not rendered
 
 What a file may use beside its nodes and RPPM renders in another way, or not at all. Log, panel and statistics name it,
-with the objects that use it. Objects without a surface (volumes) are named likewise, and so are nodes; of these the
-remarks further down say what stands in.
+with the objects that use it. Nodes are named likewise; the remarks further down say what stands in for these.
 
 | used by a file | in RPPM's picture |
 |---|---|
 """
+VOLUMES = (
+    ("Volumes that scatter", "left out"),
+    ("What varies within a volume", "one value stands for all of it"),
+    ("Light of a volume that more than one diffuse surface scatters", "left out"),
+    ("A world's volume", "left out"),
+    ("Volume objects, and smoke and fire of fluid domains", "left out; the mesh of the domain is not shown either"),
+)
+"""Uses of volumes that exports name as they come upon them, and what becomes of them."""
 
 
 def not_rendered() -> str:
-    """The section of the page that comes of the tables by which exports are searched."""
-    rows = [f"| {entry.title} | {entry.consequence} |\n" for entry in (*omissions.OF_OBJECTS, *omissions.OF_SCENES)]
+    """The section of the page that comes of VOLUMES and of the tables by which exports are searched."""
+    listed = [(entry.title, entry.consequence) for entry in (*omissions.OF_OBJECTS, *omissions.OF_SCENES)]
+    rows = [f"| {title} | {consequence} |\n" for title, consequence in (*listed, *VOLUMES)]
     passes = ", ".join(omissions.PASSES.values())
     return f"{NOT_RENDERED}{''.join(rows)}| Passes: {passes} | not offered; links from them stay black |\n"
 

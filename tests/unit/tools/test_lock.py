@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Packages that make installs are pinned, package by package."""
+"""Packages that make installs are pinned, one by one."""
 
 import re
 import subprocess

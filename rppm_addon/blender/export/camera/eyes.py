@@ -8,7 +8,10 @@ from .stand_in import camera_data
 
 
 class Eye:
-    """Where cameras stand, and how far they are shifted, for the view that an engine is rendering."""
+    """Where cameras stand, and how far they are shifted, for the view that an engine is rendering.
+
+    Objects that are no cameras have no two eyes: Blender would crash if asked for those.
+    """
 
     def __init__(self, engine: bpy.types.RenderEngine | None = None) -> None:
         """engine: None, or one whose render has a single view, takes cameras as they are."""
@@ -21,12 +24,15 @@ class Eye:
 
     def matrix_of(self, camera: bpy.types.Object) -> np.ndarray:
         """(4, 4) float64, camera to world."""
-        matrix = camera.matrix_world if self._engine is None else self._engine.camera_model_matrix(camera)
+        is_plain = self._engine is None or camera.type != "CAMERA"
+        matrix = camera.matrix_world if is_plain else self._engine.camera_model_matrix(camera)
         return np.array(matrix, np.float64)
 
     def shift_of(self, camera: bpy.types.Object) -> float:
         """To the right, as Blender has it."""
-        return camera_data(camera).shift_x if self._engine is None else self._engine.camera_shift_x(camera)
+        if self._engine is None or camera.type != "CAMERA":
+            return camera_data(camera).shift_x
+        return self._engine.camera_shift_x(camera)
 
 
 def views_of(engine: bpy.types.RenderEngine, layer: str) -> list[str]:

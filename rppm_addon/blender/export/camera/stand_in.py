@@ -13,7 +13,7 @@ _SPOT_SIZE = 0.25 * math.pi
 
 @dataclass(frozen=True)
 class StandInCamera:
-    """Stand-in for a bpy.types.Camera that is read, with the values of Cycles (blender/camera.cpp, BlenderCamera)."""
+    """Properties that are read of a bpy.types.Camera, with the values of Cycles (blender/camera.cpp, BlenderCamera)."""
 
     lens: float = 50.0
     """Millimeters."""

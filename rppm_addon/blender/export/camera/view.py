@@ -16,12 +16,15 @@ _PIXEL_SIZES = {"AUTO": 1, "1": 1, "2": 2, "4": 4, "8": 8}
 def export_view(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> Camera:
     """The camera of the viewport that is being drawn: its frame is the region, its crop the render border.
 
-    Raises SceneError where the border holds no pixel or the scene's camera cannot be rendered.
+    Raises SceneError where the border holds no pixel, or the scene's camera cannot be rendered or has no scale.
     """
     region, view, space = context.region, context.region_data, context.space_data
     coarseness = _PIXEL_SIZES.get(context.scene.render.preview_pixel_size, 1)
     width, height = (max(1, size // coarseness) for size in (region.width, region.height))
-    matrix = unscaled(np.array(view.view_matrix.inverted(), np.float64))
+    try:
+        matrix = unscaled(np.array(view.view_matrix.inverted(), np.float64))
+    except ValueError:
+        raise SceneError("the view has no direction, as its camera has a scale of 0; give it another scale") from None
     projection = np.array(view.window_matrix, np.float64)
     through_camera = view.view_perspective == "CAMERA" and space.camera is not None
     camera_object = space.camera.evaluated_get(depsgraph) if through_camera else None

@@ -47,12 +47,12 @@ def read_corner_normals(
 
 
 def is_flat(mesh: bpy.types.Mesh) -> bool:
-    """Whether each triangle of a mesh has its own normal."""
+    """True where each triangle of a mesh has its own normal."""
     return mesh.normals_domain == "FACE" and not mesh.has_custom_normals
 
 
 def _mixes_smooth_and_flat(mesh: bpy.types.Mesh) -> bool:
-    """Whether flat faces are all that tells corners of a vertex apart."""
+    """True where flat faces are all that tells corners of a vertex apart."""
     if mesh.normals_domain != "CORNER" or mesh.has_custom_normals:
         return False
     sharp = attribute_elements(mesh, "sharp_edge", "value", len(mesh.edges), 1, bool)
@@ -97,7 +97,7 @@ def _corners_that_count(mesh: bpy.types.Mesh, normals: np.ndarray) -> np.ndarray
 
 
 def _is_manifold(edges: np.ndarray, vertices: np.ndarray, ends: np.ndarray) -> bool:
-    """Whether no edge has more than two faces, or two that go along it the same way: Blender takes these for sharp."""
+    """True where no edge has more than two faces, or two that go along it one way, which Blender takes for sharp."""
     count = np.bincount(edges, minlength=len(ends))
     if count.max(initial=0) > 2:
         return False
@@ -160,7 +160,7 @@ def _face_lengths(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def _has_free_normals(mesh: bpy.types.Mesh) -> bool:
-    """Whether normals are what users or nodes have stored, of any length."""
+    """True where normals are what users or nodes have stored, of any length."""
     attribute = mesh.attributes.get("custom_normal")
     return attribute is not None and attribute.data_type == "FLOAT_VECTOR"
 
@@ -176,7 +176,7 @@ def _make_unit(normals: np.ndarray) -> None:
 
 
 def _no_zeros_among(normals: np.ndarray) -> bool:
-    """Whether normals that are unit vectors, 0 or NaN are unit vectors all: by sums of squares, block by block."""
+    """True where normals that are unit vectors, 0 or NaN are unit vectors all: by sums of squares, block by block."""
     whole = len(normals) // _BLOCK * _BLOCK
     for block in (normals[:whole].reshape(-1, 3 * _BLOCK), normals[whole:].reshape(1, -1)):
         squares = np.einsum("ij,ij->i", block, block)

@@ -36,7 +36,7 @@ def elements(collection: bpy.types.bpy_prop_collection, field: str, count: int, 
 def attribute_elements(
     mesh: bpy.types.Mesh, name: str, field: str, count: int, width: int, kind: type
 ) -> np.ndarray | None:
-    """Values that ``elements`` gives of an attribute of a mesh; None when there is none, as of all in Edit Mode."""
+    """The array that ``elements`` gives of a mesh's attribute; None where there is none, as always in Edit Mode."""
     attribute = None if mesh.is_editmode else mesh.attributes.get(name)
     return None if attribute is None else elements(attribute.data, field, count, width, kind)
 

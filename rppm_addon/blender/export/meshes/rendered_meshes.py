@@ -8,17 +8,17 @@ import bpy
 
 
 def is_made_anew(data: object) -> bool:
-    """Whether rendered_mesh has Blender make a mesh of an object that has such data: none, or a mesh in Edit Mode."""
+    """True for the data of objects of which rendered_mesh has Blender make a mesh: none, or a mesh in Edit Mode."""
     return data is None or (isinstance(data, bpy.types.Mesh) and data.is_editmode)
 
 
 def has_no_faces(mesh: bpy.types.Mesh) -> bool:
-    """Whether an evaluated mesh has nothing to be rendered, as far as it can tell: in Edit Mode it may count none."""
+    """True where an evaluated mesh has nothing to be rendered, as far as it tells: in Edit Mode it may count none."""
     return len(mesh.polygons) == 0 and not mesh.is_editmode
 
 
 def is_gas_domain(source: bpy.types.Object) -> bool:
-    """Whether Cycles takes a mesh object for the smoke and fire in it, baked or not, and does not show its mesh."""
+    """True where Cycles takes a mesh object for the smoke and fire in it, baked or not, and does not show its mesh."""
     for modifier in source.modifiers:
         if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
             return modifier.domain_settings.domain_type == "GAS"

@@ -294,7 +294,7 @@ class GraphExporter:
         return Link(self._known[key], output)
 
     def _fallback(self, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
-        """Stand-in for a node that is not rendered: a diffuse surface of its color, or nothing, as in Cycles."""
+        """The stand-in for a node that is not rendered: a diffuse surface of its color, or nothing, as in Cycles."""
         if output.type != "SHADER":
             self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
             return None

@@ -193,7 +193,7 @@ class MeshTable:
 def _read_of(
     source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | None
 ) -> Iterator[bpy.types.Mesh | RoundSource | None]:
-    """Data to be read of an object: those given, or else a mesh that Blender makes of it; None without one."""
+    """The data to be read of an object: those given, or else a mesh that Blender makes of it; None without one."""
     if mesh is None or isinstance(mesh, bpy.types.Mesh):
         with rendered_mesh(source, mesh) as rendered:
             yield rendered

@@ -259,6 +259,7 @@ class ObjectPass:
         if kind is None:
             kind = self._kinds[key] = _Kind(source.original.session_uid)
             self._multiple.add(kind.uid)
+            self._faceless.is_multiplied(kind.uid)
         if not (owner.shown and instance.show_self) or not (owner.visibility or source.type == "LIGHT"):
             return
         if self._reader.culling.leaves_out(source, matrix):
@@ -358,7 +359,7 @@ class ObjectPass:
         kind.learned = True
 
     def _shows_no_mesh(self, source: bpy.types.Object, is_own: bool) -> bool:
-        """Whether nothing of a mesh is to be rendered. is_own: it is the object's, none that nodes of geometry made."""
+        """True where nothing of a mesh is rendered. is_own: it is the object's, none that nodes of geometry made."""
         if is_own and is_gas_domain(source):
             self._report.warn(
                 f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the '
