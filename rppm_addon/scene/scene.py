@@ -62,7 +62,7 @@ class Scene:
 
     @property
     def world_offset(self) -> np.ndarray:
-        """What places in the scene lack to be those in Blender's world, (3,) meters."""
+        """Offset of Blender's world: places in the scene lack it, (3,) meters."""
         return np.zeros(3) if self.world_origin is None else self.world_origin
 
     @property
