@@ -46,13 +46,15 @@ class FirstLook:
         library: ProgramLibrary,
         geometry: Geometry,
         displaced: Callable[[Scene], Scene] = lambda scene: scene,
+        centered: Callable[[Scene], Scene] = lambda scene: scene,
     ) -> None:
         """geometry: of the mapper that renders the scenes later, which then has it on the device already; displaced:
-        gives a scene with the meshes that the mapper has in place of its own, as far as that is known."""
+        gives a scene with the meshes that the mapper has in place of its own, as far as that is known; centered: gives
+        a scene with the places that the mapper has."""
         self._context = context
         self._draw = library.draw("first_look/first_look.vert", "first_look/first_look.frag")
         self._geometry = geometry
-        self._displaced = displaced
+        self._displaced, self._centered = displaced, centered
         self._surfaces = GrowingBuffer(context, "plain surfaces")
         self._opacities = GrowingBuffer(context, "opacities of instances")
         self._camera = GrowingBuffer(context, "camera of the first look")
@@ -63,6 +65,9 @@ class FirstLook:
 
     def shows_parts_of(self, scene: Scene) -> bool:
         """Whether a scene can be drawn with what the one before has on the device."""
+        return self._has_parts_of(self._centered(scene))
+
+    def _has_parts_of(self, scene: Scene) -> bool:
         before = self._shown
         return (
             before is not None
@@ -80,7 +85,7 @@ class FirstLook:
         width, height = scene.camera.resolution
         if max(width, height) > MOST_RASTER_PIXELS:
             raise DeviceError(f"{width} x {height} pixels are more than devices draw; make the viewport smaller")
-        self.take(scene)
+        scene = self.take(scene)
         self._camera.upload(camera_view(scene.camera, 0, height, (0.0, 0.0)))
         gl = self._context.moderngl
         color, depth = gl.texture((width, height), 4, dtype="f4"), gl.depth_texture((width, height))
@@ -97,7 +102,7 @@ class FirstLook:
                 resource.release()
 
     def rasterize(self, framebuffer: moderngl.Framebuffer, scene: Scene, camera: moderngl.Buffer) -> None:
-        """The nearest surfaces, transparent ones too, for which take() was called.
+        """The nearest surfaces of a scene that take() returned, transparent ones too.
 
         framebuffer: of three float textures: color, premultiplied; normal and view depth, meters; numbers of instance
         and material, 0 where there is no surface (shaders/first_look/first_look.frag).
@@ -136,9 +141,10 @@ class FirstLook:
         )
         framebuffer.depth_mask = True
 
-    def take(self, scene: Scene) -> None:
-        """Upload what is not the very object of the scene before."""
-        if not self.shows_parts_of(scene):
+    def take(self, scene: Scene) -> Scene:
+        """Upload what is not the very object of the scene before; returns the scene to be drawn, which is centered."""
+        scene = self._centered(scene)
+        if not self._has_parts_of(scene):
             self._shown = None
             self._geometry.build(self._displaced(scene), len(scene.materials))
             surfaces = [plain_surface(owner.graph, scene.images) for owner in (*scene.materials, default_material())]
@@ -150,6 +156,7 @@ class FirstLook:
         if scene.world.graph is not None:
             self._sky = self._sky * plain_surface(scene.world.graph, scene.images).emission
         self._shown = scene
+        return scene
 
     def release(self) -> None:
         """Give the buffers back, but for the geometry, which is somebody else's as well."""

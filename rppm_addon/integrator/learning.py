@@ -69,7 +69,7 @@ class Learning:
         """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
 
     def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
-        """Those of an iteration whose stored photons are known. The first one's say how many later ones have, until
+        """Radii of an iteration whose stored photons are known. The first one's say how many later ones have, until
         tally knows which lights these are of."""
         if iteration.number == 1:
             self._count_later_photons(listed.count, listed.count - listed.diffused_count)

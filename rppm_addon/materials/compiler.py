@@ -32,7 +32,7 @@ MIX_SHADER, ADD_SHADER, BUMP = "mix_shader", "add_shader", "bump"
 
 _IMPLICIT = {
     "normal": "surface.normal",
-    "position": "surface.position",
+    "position": "world_position(surface)",
     "tangent": "default_tangent(surface)",
 }
 """What inputs stand for whose default is a name."""

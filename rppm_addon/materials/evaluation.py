@@ -12,12 +12,13 @@ from ..gl.constants import Constants
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
-from ..scene.camera import Camera
+from ..scene.scene import Scene
 
 Record(
     "EvaluateParameters",
     world_to_camera="mat4",
     window="vec4",
+    world_origin="vec3",
     count="uint",
     width="uint",
     height="uint",
@@ -62,6 +63,7 @@ class LightSurfaceKind(enum.IntEnum):
     SUN_OF_A_WORLD = 3
 
 
+_WITHOUT_PLACE = {LightSurfaceKind.SUN, LightSurfaceKind.SUN_OF_A_WORLD}
 Constants("MapShapes", MAP=MapShape)
 Constants("LightSurfaceKinds", LIGHT_SURFACE=LightSurfaceKind)
 
@@ -104,7 +106,7 @@ class GraphEvaluator(BufferSet):
         height: int,
         from_camera: bool,
         ray_length: float,
-        camera: Camera,
+        scene: Scene,
         light_surface: LightSurface | None = None,
     ) -> np.ndarray:
         """(height, width, 3) float32 emission in the directions of an equirectangular map, or of a light over its map,
@@ -112,6 +114,10 @@ class GraphEvaluator(BufferSet):
 
         text: the compiled graph; first_constant: where its constants start in the buffer MaterialData.
         """
+        camera, matrix, origin = scene.camera, scene.camera.matrix.copy(), scene.world_offset
+        if light_surface is None or light_surface.kind in _WITHOUT_PLACE:  # directions are asked about, as of places
+            matrix[:3, 3] += origin
+            origin = np.zeros(3)
         program = self._library.compute("materials/evaluate.comp", inserts={"materials/generated.glsl": text})
         rows = max(1, _CHUNK // width)
         self._emissions.require_items(width * min(rows, height))
@@ -128,7 +134,8 @@ class GraphEvaluator(BufferSet):
         for first_row in range(0, height, rows):
             count = width * min(rows, height - first_row)
             parameters = {
-                "world_to_camera": np.linalg.inv(camera.matrix), "window": camera.window, "count": count,
+                "world_to_camera": np.linalg.inv(matrix), "window": camera.window, "world_origin": origin,
+                "count": count,
                 "width": width, "height": height, "first_row": first_row, "first_constant": first_constant,
                 "from_camera": from_camera,
                 "attribute_count": 0, "orthographic": camera.orthographic, "pixel_size": 0.0,

@@ -258,7 +258,7 @@ class MaterialTables(BufferSet):
         text, first, owner = self._others[id(graph)]
         try:
             return self._evaluator.run(
-                text, first, self.buffers, width, height, from_camera, ray_length, self._scene.camera, light_surface
+                text, first, self.buffers, width, height, from_camera, ray_length, self._scene, light_surface
             )
         except CompileError as error:
             self._scene.warn(f"{owner}: the driver does not compile its nodes ({first_line(error)}); {_DARK}")

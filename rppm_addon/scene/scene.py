@@ -36,6 +36,8 @@ class Scene:
     """Pixels that are the unit of Dicing.edge_length."""
     cubemap_center: np.ndarray | None = field(default=None, metadata=declared(3))
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
+    world_origin: np.ndarray | None = field(default=None, metadata=declared(3))
+    """(3,) meters in Blender's world, from which all places but those of suns and particles are counted; None is 0."""
     shutter: Shutter | None = None
     """What moves while the picture is taken; None is nothing."""
     neighbors: Shutter | None = None
@@ -57,6 +59,11 @@ class Scene:
     def photon_count(self) -> int:
         """Photons of the first iteration; where automatic, later ones may have fewer."""
         return self.settings.photons_for(*self.camera.resolution)
+
+    @property
+    def world_offset(self) -> np.ndarray:
+        """What places in the scene lack to be those in Blender's world, (3,) meters."""
+        return np.zeros(3) if self.world_origin is None else self.world_origin
 
     @property
     def triangle_count(self) -> int:

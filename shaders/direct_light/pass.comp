@@ -11,6 +11,9 @@ layout(local_size_x = 64) in;
 #include "common/path_depth.glsl"
 #include <CameraPath>
 #include <PassSurfaceParameters>
+
+const float NO_REACH = 1e-30;  // of a ray that is traced and meets nothing
+
 layout(std140, binding = 0) uniform Parameters { PassSurfaceParameters parameters; };
 layout(std430, binding = 0) readonly buffer Closures;
 layout(std430, binding = 1) buffer ShadowRays;
@@ -32,8 +35,9 @@ void main() {
                      ray.direction, INFINITY_DISTANCE);
     if (ray.maximum_distance < INFINITY_DISTANCE) {
         vec3 to_end = ray.origin + ray.maximum_distance * ray.direction - beyond.origin;
-        beyond.maximum_distance = dot(to_end, ray.direction);
-        if (beyond.maximum_distance > 0.0) beyond.direction = normalize(to_end);
+        // A surface may lie nearer to the end than rays begin off it: there is nothing in between.
+        beyond.maximum_distance = max(dot(to_end, ray.direction), NO_REACH);
+        if (beyond.maximum_distance > NO_REACH) beyond.direction = normalize(to_end);
     }
     shadow_rays[index] = beyond;
 }

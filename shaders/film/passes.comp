@@ -101,7 +101,7 @@ void write_first_surface(Closure closure) {
     uint triangle = hit ? closure.triangle : 0u;
     write_pass(PASS_DEPTH, view_depth(closure.position));
     write_pass(PASS_MIST, mist_at(closure.position));
-    write_pass(PASS_POSITION, closure.position);
+    write_pass(PASS_POSITION, closure.position + parameters.world_origin);
     write_pass(PASS_NORMAL, unpack_unit_vector(closure.shading_normal));
     write_pass(PASS_UV, uv_at(hits[index]));
     write_pass(PASS_OBJECT_INDEX, float(shading_instances[attributes[triangle].instance].object_index));

@@ -59,7 +59,7 @@ void main() {
     bool finite = true;
     for (uint k = 0u; k < 3u; ++k) {
         corners[k] = instance.mesh_corner + triangle_corners[3u * local + (mirrored && k > 0u ? 3u - k : k)];
-        local_points[k] = three_floats(instance.mesh_vertex + corner_vertices[corners[k]]);
+        local_points[k] = three_floats(instance.mesh_vertex + corner_vertices[corners[k]]) - instance.pivot;
         points[k] = linear * local_points[k] + origin;
         finite = finite && reasonable(points[k]);
     }

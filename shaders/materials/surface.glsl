@@ -12,7 +12,7 @@ layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_va
 const uint NO_INSTANCE = 0xffffffffu;
 
 struct Surface {
-    vec3 position;      // world space, meters; of a world: the direction
+    vec3 position;      // meters from the parameters' world_origin; of a world: the direction
     vec3 normal;        // shading normal, on the viewer's side
     vec3 geometric;     // geometric normal, on the viewer's side
     vec3 viewer;        // unit vector to where the path comes from
@@ -33,6 +33,9 @@ void triangle_points(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
     v1 = triangle_vertices[3u * triangle + 1u].xyz;
     v2 = triangle_vertices[3u * triangle + 2u].xyz;
 }
+
+// In Blender's world, which nodes show.
+vec3 world_position(Surface surface) { return surface.position + parameters.world_origin; }
 
 vec2 triangle_uv(uint triangle, vec3 b) {
     return b.x * attributes[triangle].uv0 + b.y * attributes[triangle].uv1 + b.z * attributes[triangle].uv2;

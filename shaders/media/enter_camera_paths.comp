@@ -3,7 +3,7 @@
 // lint:
 // lint: TEXEL_BUFFERS=1
 // The media that camera paths begin in: those at the camera, and what lies on the way from there to where each ray
-// begins. Texels have no camera.
+// begins. Texels have no camera: their paths come to the surface from before it, and those to the world from nowhere.
 
 layout(local_size_x = 64) in;
 
@@ -16,14 +16,24 @@ layout(std430, binding = 1) readonly buffer Attributes;
 layout(std430, binding = 2) readonly buffer MediumBoxes;
 layout(std430, binding = 3) readonly buffer Rays;
 layout(std430, binding = 5) buffer CameraPaths;
+layout(std430, binding = 6) readonly buffer Hits;
 layout(std430, binding = 7) readonly buffer Materials;
 #include "media/crossings.glsl"
+
+uint media_before(Ray ray, uint triangle) {
+    if (triangle == NO_TRIANGLE) return 0u;
+    vec3 v0 = triangle_vertex(3u * triangle).xyz, v1 = triangle_vertex(3u * triangle + 1u).xyz,
+         v2 = triangle_vertex(3u * triangle + 2u).xyz;
+    vec3 normal = normalize(cross(v1 - v0, v2 - v0));
+    float offset = ray_offset(normal, v0, v1, v2);
+    return media_at(ray.origin + (dot(normal, ray.direction) < 0.0 ? offset : -offset) * normal);
+}
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
-    vec3 origin = rays[index].origin;
-    uint media = parameters.has_camera != 0u
-        ? media_beyond(parameters.camera_position, media_of_sources[parameters.light_count], origin) : media_at(origin);
+    Ray ray = rays[index];
+    uint media = parameters.has_camera == 0u ? media_before(ray, hits[index].triangle)
+        : media_beyond(parameters.camera_position, media_of_sources[parameters.light_count], ray.origin);
     camera_paths[index].flags |= media << FIRST_MEDIUM;
 }

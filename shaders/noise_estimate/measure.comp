@@ -21,7 +21,7 @@ float total(vec3 color) { return color.r + color.g + color.b; }
 float noise_of(uint pixel) {
     vec3 mean = film[pixel].rgb, half_mean;
     for (uint channel = 0u; channel < 3u; channel++) half_mean[channel] = half_means[3u * pixel + channel];
-    float intensity = parameters.exposure * max(total(mean), 0.0);
+    float intensity = parameters.exposure * abs(total(mean));
     float difference = parameters.exposure * parameters.balance * total(abs(mean - half_mean));
     return difference / (EPSILON + (intensity < 1.0 ? sqrt(intensity) : intensity));
 }

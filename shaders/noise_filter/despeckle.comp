@@ -33,7 +33,9 @@ vec3 despeckled(ivec2 pixel, vec3 light) {
         count += 1u;
     }
     brighter /= max(float(count), 1.0);
-    return count + DARKER_KEPT > AROUND && own < SPECKLE * luminance(brighter) ? brighter : light;
+    float around = luminance(brighter);
+    // Where light is negative, half as bright is no measure.
+    return count + DARKER_KEPT > AROUND && around > 0.0 && own < SPECKLE * around ? brighter : light;
 }
 
 void main() {

@@ -30,5 +30,5 @@ vec3 kept_light(uint pixel) {
 // Black where the film holds no number.
 vec3 filtered_light(uint pixel) {
     vec3 light = film[pixel].rgb;
-    return is_finite(light) ? max(light - kept_light(pixel), vec3(0.0)) : vec3(0.0);
+    return is_finite(light) ? light - kept_light(pixel) : vec3(0.0);
 }

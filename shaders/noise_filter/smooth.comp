@@ -44,7 +44,7 @@ float steady_variance(ivec2 pixel, ivec2 last) {
 vec4 smoothed(ivec2 pixel, ivec2 last) {
     vec4 signal = texelFetch(signal_image, pixel, 0), guide = texelFetch(guide_image, pixel, 0);
     float bright = luminance(signal.rgb);
-    float edge = parameters.luminance_step * sqrt(steady_variance(pixel, last)) + 1e-4 * bright;
+    float edge = parameters.luminance_step * sqrt(steady_variance(pixel, last)) + 1e-4 * abs(bright);
     vec2 slope = depth_slope(pixel, last, guide.w);
     bool surface = guide.xyz != vec3(0.0);
     vec4 sum = vec4(0.0);

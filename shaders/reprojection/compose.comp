@@ -68,7 +68,7 @@ bool find_last_place(ivec2 pixel, Seen seen, out vec3 found) {
     if (parallel && background) return true;
     vec3 axis = parallel ? vec3(at, seen.depth) : (background ? 1.0 : seen.depth) * vec3(at, 1.0);
     vec3 offset = mat3(camera.right, camera.up, camera.forward) * axis;
-    if (!background) offset += camera.position - last_camera.position;
+    if (!background) offset += camera.position - last_camera.position + parameters.way_of_origins;
     vec3 p = vec3(dot(offset, last_camera.right), dot(offset, last_camera.up), dot(offset, last_camera.forward));
     if (!parallel && !(p.z > 0.0)) return false;
     vec2 window = parallel ? p.xy : p.xy / p.z;

@@ -73,8 +73,8 @@ def glsl_matrix(matrix: Matrix) -> str:
 
 SURFACE = f"""
 struct Surface {{ vec3 viewer; bool backfacing; }};
-struct Parameters {{ mat4 world_to_camera; }};
-const Parameters parameters = Parameters({glsl_matrix(CAMERA_MATRIX.inverted())});
+struct Parameters {{ mat4 world_to_camera; vec3 world_origin; }};
+const Parameters parameters = Parameters({glsl_matrix(CAMERA_MATRIX.inverted())}, vec3(0.0));
 const mat4 TO_OBJECT = {glsl_matrix(OBJECT_MATRIX.inverted())}, TO_WORLD = {glsl_matrix(OBJECT_MATRIX)};
 vec3 point_to_object(Surface surface, vec3 p) {{ return (TO_OBJECT * vec4(p, 1.0)).xyz; }}
 vec3 direction_to_object(Surface surface, vec3 d) {{ return mat3(TO_OBJECT) * d; }}

@@ -38,7 +38,8 @@ class LivingPaths(BufferSet):
         """The list, and where there is to be ``keep``, room for the next one."""
         self.most = 0
         """Paths that the list may have: as many as the list began with."""
-        self._bound = 0
+        self._bound = self._asked = 0
+        """The last answer of ``bound``, and the segment that the device was asked in for it."""
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -65,6 +66,7 @@ class LivingPaths(BufferSet):
         """List the paths from 0 to below ``paths``."""
         self.require(paths)
         self.most = self._bound = paths
+        self._asked = 0
         groups = -(-paths // GROUP_SIZE)
         self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
@@ -72,7 +74,8 @@ class LivingPaths(BufferSet):
     def begin(self, most: int) -> None:
         """List none, for a program to list up to so many (shaders/living_paths/kept.glsl)."""
         self.require(most)
-        self.most = most
+        self.most = self._bound = most
+        self._asked = 0
         self._begin(self._lists[0], 0, (0, 0, 1))
 
     def keep(self, rays: moderngl.Buffer) -> None:
@@ -83,7 +86,8 @@ class LivingPaths(BufferSet):
     def take(self, paths: "LivingPaths", rays: moderngl.Buffer) -> None:
         """List those of another list's paths whose rays (RAY, by path) are active."""
         self.require(paths.most)
-        self.most = paths.most
+        self.most = self._bound = paths.most
+        self._asked = 0
         self._keep_of(paths, self._lists[0], rays)
 
     def _keep_of(self, paths: "LivingPaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
@@ -116,8 +120,8 @@ class LivingPaths(BufferSet):
 
         A driver on the processor tells exactly, a GPU every few segments (SEGMENTS_AT_ONCE).
         """
-        if segment > 0 and (self._context.is_software or segment % SEGMENTS_AT_ONCE == 0):
-            self._bound = self.read_count()
+        if segment != self._asked and (self._context.is_software or segment % SEGMENTS_AT_ONCE == 0):
+            self._bound, self._asked = self.read_count(), segment
         return self._bound
 
     @property

@@ -8,7 +8,7 @@ import numpy as np
 _FOR_PHOTONS_ALONE = 2.0
 _LEAST_PER_PIXEL, _FEWEST = 0.25, 1 << 11
 _OF_USE = 1e-3
-"""Of a light's photons in the first iteration: where more contributed, all of them count."""
+"""Share of a light's photons in the first iteration: where more contributed, all of them count."""
 
 
 def photons_of_use(by_light: np.ndarray) -> tuple[float, float]:

@@ -267,7 +267,7 @@ PHOTON_SEGMENT_SHIFT = 22
 PHOTON_CONTRIBUTED = 1 << 31
 Constants("PhotonNumbers", PHOTON_SEGMENT_SHIFT=PHOTON_SEGMENT_SHIFT, PHOTON_CONTRIBUTED=PHOTON_CONTRIBUTED)
 DEPTH_BITS = 11
-"""Of bounces, and of transparent surfaces above them."""
+"""Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""
 Constants("Depths", DEPTH_BITS=DEPTH_BITS)
 StorageBlock("PhotonRange", "uint photon_first; uint photon_end;")
 """Where the photons of the current segment begin among those of the iteration, and where they end."""

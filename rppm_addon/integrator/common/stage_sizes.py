@@ -23,7 +23,7 @@ class StageSizes:
     photons: int = 0
     """Of an iteration, the most."""
     segments: int = 0
-    """Of a photon path that nothing but its bounces limits, the first leaving the light."""
+    """Segments of a photon path that nothing but its bounces limits, the first leaving the light."""
     passes: tuple[RenderPass, ...] = ()
     has_catchers: bool = False
     """Whether objects catch shadows."""

@@ -177,7 +177,7 @@ class TakingImportons:
     center: np.ndarray
     """Of the splat cubemap for all others, (3,) meters, which changes no sum."""
     max_bounces: int = UNLIMITED_BOUNCES
-    """Of photon and importon together."""
+    """Most bounces of photon and importon together."""
     transparent_max_bounces: int = UNLIMITED_BOUNCES
     """Transparent surfaces that both have passed, likewise."""
     camera_bounces: int = UNLIMITED_BOUNCES

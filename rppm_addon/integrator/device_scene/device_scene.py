@@ -23,6 +23,7 @@ from ..surfaces.bodies import warn_of_open_bodies
 from ..surfaces.displacement import Displacement
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
+from .centering import Centering
 from .changes import Changes, changes_between, snapshot
 from .shutter import moment, swept_bounds
 from .stage_context import StageContext
@@ -44,8 +45,9 @@ class DeviceScene:
         # Where no unit rasterizes that takes two to three times as long, and trying it most of the first build.
         self.deep_cubemap = DeepCubemap(context, library, rasterize=False if context.is_software else None)
         self.resolve = Resolve(context, library)
+        self.centering = Centering()
         self.scene: Scene | None = None
-        """Displaced; with a shutter, as it is at the iteration's moment."""
+        """Centered and displaced; with a shutter, as it is at the iteration's moment."""
         self.center = np.full(3, np.nan)
         """Of the deep cubemap, (3,) meters."""
         self._source_scene: Scene | None = None
@@ -89,6 +91,7 @@ class DeviceScene:
         center_tolerance: how far from where the deep cubemap's center should be it may stay, in radii of the scene,
         which changes no picture. Raises SceneError or DeviceError; what is built then is built anew the next time.
         """
+        scene = self.centering.centered(scene)
         before = self._uploaded_scene
         changes = changes_between(before, scene)
         self._take(scene)
@@ -119,6 +122,7 @@ class DeviceScene:
 
     def upload_geometry(self, scene: Scene) -> None:
         """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as update does."""
+        scene = self.centering.centered(scene)
         self._take(scene)
         self.materials.build(scene)
         scene = self.displacement.displaced(scene, self.materials, True)
@@ -168,7 +172,7 @@ class DeviceScene:
             if not keep_learned:  # within an open shutter no mesh gets holes
                 with self._collect_warnings("bodies"):
                     self._warn_of_media(scene)
-        self.resolve.look_from(scene.camera, scene.settings.seed)
+        self.resolve.look_from(scene)
         if changes.geometry or changes.materials or changes.lights:
             with self._collect_warnings("lights"):
                 self.lights.build(

@@ -68,7 +68,7 @@ class Portals:
         passed, power = None, 0.0
         if len(self.records):
             passed = light_through(self.records, environment.brightness)
-            power = power_through(passed, float(np.mean(environment.radiance)))
+            power = power_through(passed, float(np.mean(np.abs(environment.radiance))))
         if not power > 0.0:
             self.records, passed = self.records[:0], None
         first = environment.add_directions(passed)

@@ -137,6 +137,8 @@ class DirectLight(BufferSet):
         passing.take(self.living_rays, rays.buffer)
         most = context.settings.transparent_max_bounces
         for surfaces in range(most + 1):
+            if not passing.bound(surfaces):
+                return
             context.deep_cubemap.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
             met = {
                 "Hits": hits.buffer,
@@ -158,8 +160,6 @@ class DirectLight(BufferSet):
             }
             passing.run(self._pass, passed, {"passed": surfaces, "transparent_max_bounces": most})
             passing.keep(rays.buffer)
-            if passing.known_empty:
-                return
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""

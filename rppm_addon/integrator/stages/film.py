@@ -35,6 +35,7 @@ Record(
     mist_start="float",
     mist_inverse_depth="float",
     mist_exponent="float",
+    world_origin="vec3",
 )
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint", is_filtered="uint")
 Record("AovParameters", count="uint", iteration="uint")
@@ -216,7 +217,7 @@ class Film(BufferSet):
             "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
         }
 
-    def _parameters(self, context: StageContext, band: Band, iteration: Iteration, segment: int) -> dict[str, float]:
+    def _parameters(self, context: StageContext, band: Band, iteration: Iteration, segment: int) -> dict[str, object]:
         mist = context.scene.world.mist
         return {
             **self.place_parameters(band, iteration),
@@ -225,6 +226,7 @@ class Film(BufferSet):
             "mist_start": mist.start,
             "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
             "mist_exponent": mist.exponent,
+            "world_origin": context.scene.world_offset,
         }
 
     def accumulate(

@@ -56,7 +56,8 @@ class Media(BufferSet):
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
         if self._is_used(context, iteration):
-            self._enter(context, importons.living, importons.path_blocks, "media/enter_camera_paths.comp")
+            blocks = importons.path_blocks | {"Hits": importons.hits.buffer}
+            self._enter(context, importons.living, blocks, "media/enter_camera_paths.comp")
 
     def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
         """Whether anything in the scene has a medium inside; finds where, and what is in it, for a new scene."""

@@ -9,11 +9,11 @@ from ...scene.meshes import Mesh, MeshShape
 from ...scene.scene import Scene
 
 _MOST_TRIANGLES = 1 << 20
-"""Of meshes that are looked at: sorting the edges of more would take seconds."""
+"""Largest meshes that are looked at: sorting the edges of more would take seconds."""
 
 
 _WELDED = 1e-6
-"""Of a mesh's size: how far vertices that count as one lie apart, at most."""
+"""Distance, at most, between vertices that count as one, as a part of a mesh's size."""
 
 
 def is_closed(mesh: Mesh) -> bool:

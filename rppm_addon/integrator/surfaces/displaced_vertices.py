@@ -11,7 +11,6 @@ from ...gl.programs import ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
 from ...materials.tables import MaterialTables, first_line
-from ...scene.camera import Camera
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
 from ...scene.scene import Scene
 from .geometry import Geometry, Placement
@@ -32,6 +31,7 @@ Record(
     "DisplaceParameters",
     world_to_camera="mat4",
     window="vec4",
+    world_origin="vec3",
     count="uint",
     attribute_count="uint",
     orthographic="uint",
@@ -79,7 +79,7 @@ class DisplacedVertices(BufferSet):
             self._library.expect(_STAGE, _inserts(text))
         meshes = [mesh for mesh, _ in shapes]
         instances = [dataclasses.replace(instance, mesh=place) for place, (_, instance) in enumerate(shapes)]
-        alone = Scene(scene.camera, meshes, instances, scene.materials)
+        alone = Scene(scene.camera, meshes, instances, scene.materials, world_origin=scene.world_origin)
         self._geometry.build(alone, materials.default_material)
         self._surface_attributes.build(alone, self._geometry, materials.attribute_names)
         found = [np.zeros((len(mesh.positions), 3), np.float32) for mesh in meshes]
@@ -96,7 +96,7 @@ class DisplacedVertices(BufferSet):
                     continue
                 for some in np.array_split(own, -(-len(own) // _AT_ONCE)):
                     records = _records(mesh, placement, first[some], graph.first_constant)
-                    offsets[some] = self._run(program, records, scene.camera, materials)
+                    offsets[some] = self._run(program, records, scene, materials)
         return found
 
     def _program(self, text: str, scene: Scene, material: str) -> ComputeProgram | None:
@@ -108,8 +108,9 @@ class DisplacedVertices(BufferSet):
             return None
 
     def _run(
-        self, program: ComputeProgram, records: np.ndarray, camera: Camera, materials: MaterialTables
+        self, program: ComputeProgram, records: np.ndarray, scene: Scene, materials: MaterialTables
     ) -> np.ndarray:
+        camera = scene.camera
         self._vertices.upload(records)
         self._offsets.require_items(len(records))
         buffers = {
@@ -123,6 +124,7 @@ class DisplacedVertices(BufferSet):
         parameters = {
             "world_to_camera": np.linalg.inv(camera.matrix),
             "window": camera.window,
+            "world_origin": scene.world_offset,
             "count": len(records),
             "attribute_count": self._surface_attributes.count,
             "orthographic": camera.orthographic,

@@ -36,6 +36,7 @@ INSTANCE_ENTRY = Record(
     row0="vec4",
     row1="vec4",
     row2="vec4",
+    pivot="vec3",
     first_triangle="uint",
     mesh_triangle="uint",
     mesh_corner="uint",
@@ -64,6 +65,8 @@ _STARTS = {
     "mesh_uv": "corner_uv",
 }
 """Members of InstanceEntry that tell where a mesh's part of such an array begins."""
+_FAR_VERTICES = 128.0
+"""Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 _BLOCK = 256
 """Vertices that are compared side by side: NumPy is slow at reducing many short rows."""
 
@@ -105,6 +108,28 @@ def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, n
             reach += np.abs(column) * halves[:, axis, None]
         low, high = middle - reach, middle + reach
     return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
+
+
+def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """(n, 3) float32 points in object space from which the vertices of placed meshes are counted as they are gathered.
+
+    Maps and scans often have their place in their vertices instead of in their matrices (n, 4, 4): what these add then
+    is large, and of the opposite sign. So where the boxes of meshes (n, 2, 3) reach far, vertices are counted from that
+    place in the box which lies nearest to the origin; elsewhere from 0.
+    """
+    nearest = np.clip(affine_inverses(matrices)[:, :, 3], boxes[:, 0], boxes[:, 1])
+    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), np.abs(boxes).max(axis=1)).max(axis=1)
+    return np.where(reach[:, None] > _FAR_VERTICES, nearest, 0.0).astype(np.float32)
+
+
+def affine_inverses(matrices: np.ndarray) -> np.ndarray:
+    """(n, 3, 4) upper rows, of affine (n, 4, 4); all 0 where there is no inverse, as for an instance without extent."""
+    # Written out: thousands of small matrices take NumPy long.
+    x, y, z, origin = (matrices[:, :3, column] for column in range(4))
+    linear = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
+    determinant = (x * linear[:, 0]).sum(axis=1)
+    linear *= np.divide(1.0, determinant, out=np.zeros_like(determinant), where=determinant != 0.0)[:, None, None]
+    return np.concatenate([linear, -np.einsum("nij,nj->ni", linear, origin)[:, :, None]], axis=2)
 
 
 @dataclass(slots=True)
@@ -186,8 +211,14 @@ class Geometry(BufferSet):
             for field, member in _STARTS.items():
                 entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
             entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+            placed = self.matrices
+            if scene.world_origin is not None:
+                pivots = _pivots(placed, np.array([bounds[place] for place in which.tolist()]))
+                entries["pivot"] = pivots
+                placed = placed.copy()
+                placed[:, :3, 3] += np.einsum("nij,nj->ni", placed[:, :3, :3], pivots)
             for row in range(3):
-                entries[f"row{row}"] = self.matrices[:, row]
+                entries[f"row{row}"] = placed[:, row]
             is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in meshes])[which]
             slots = _fill(entries, instances, is_round, len(scene.materials), default_material)
         self.has_round_shapes = bool(instances) and bool(is_round.any())

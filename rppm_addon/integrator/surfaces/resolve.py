@@ -15,7 +15,6 @@ from ...gl.records import Record
 from ...gl.sources import CompileError
 from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
-from ...scene.camera import Camera
 from ...scene.scene import Scene
 from ..common.living_paths import LivingPaths
 from ..common.records import CAMERA_PATH, CLOSURE, PHOTON_PATH
@@ -27,6 +26,7 @@ Record(
     "ResolveParameters",
     world_to_camera="mat4",
     window="vec4",
+    world_origin="vec3",
     seed="uint",
     iteration="uint",
     segment="uint",
@@ -154,14 +154,16 @@ class Resolve(BufferSet):
         if self._traversal is not None:
             self._node_rays.program(self._traversal, self._casts_rays or casts)
 
-    def look_from(self, camera: Camera, seed: int) -> None:
-        """Take the camera that nodes may ask about, and the seed of random choices."""
+    def look_from(self, scene: Scene) -> None:
+        """Take the camera that nodes may ask about, where the world is, and the seed of random choices."""
+        camera = scene.camera
         self._parameters = {
             "world_to_camera": np.linalg.inv(camera.matrix),
             "window": camera.window,
             "orthographic": camera.orthographic,
             "pixel_size": camera.pixel_size,
-            "seed": seed,
+            "world_origin": scene.world_offset,
+            "seed": scene.settings.seed,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
             "camera_flags": CAMERA_PATH.offset("flags") // 4,

@@ -17,7 +17,7 @@ from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, Mesh
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
 from ..common.records import TERMINATOR_SHIFT, TERMINATOR_STEPS
-from .geometry import Geometry
+from .geometry import Geometry, affine_inverses
 
 SHADING_INSTANCE = Record(
     "ShadingInstance",
@@ -145,7 +145,7 @@ def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, 
     records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
     records["shape"] = np.array([_SHAPES[meshes[index].shape] for index in used])[place]
     records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
-    inverses = _inverses(matrices)
+    inverses = affine_inverses(matrices)
     for row in range(3):
         records[f"to_object{row}"] = inverses[:, row]
     records["location"] = matrices[:, :3, 3]
@@ -176,22 +176,12 @@ def _column(members: list, name: str) -> np.ndarray:
 def object_record(matrix: np.ndarray) -> np.ndarray:
     """() SHADING_INSTANCE of an object without a mesh, whose generated coordinates are those of the object."""
     record = SHADING_INSTANCE.zeros(1)[0]
-    (inverse,) = _inverses(np.asarray(matrix, np.float64)[None])
+    (inverse,) = affine_inverses(np.asarray(matrix, np.float64)[None])
     record["to_object0"], record["to_object1"], record["to_object2"] = inverse
     record["location"] = matrix[:3, 3]
     record["texture_location"], record["texture_scale"] = 0.5, 1.0
     record["color"] = 1.0
     return record
-
-
-def _inverses(matrices: np.ndarray) -> np.ndarray:
-    """(n, 3, 4) upper rows, of affine (n, 4, 4); all 0 where there is no inverse, as for an instance without extent."""
-    # Written out: thousands of small matrices take NumPy long.
-    x, y, z, origin = (matrices[:, :3, column] for column in range(4))
-    linear = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
-    determinant = (x * linear[:, 0]).sum(axis=1)
-    linear *= np.divide(1.0, determinant, out=np.zeros_like(determinant), where=determinant != 0.0)[:, None, None]
-    return np.concatenate([linear, -np.einsum("nij,nj->ni", linear, origin)[:, :, None]], axis=2)
 
 
 def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:

@@ -30,6 +30,7 @@ Record(
     new_count="float",
     most_history="float",
     most_specular_history="float",
+    way_of_origins="vec3",
 )
 
 MOST_HISTORY = 8.0
@@ -81,6 +82,8 @@ class SeenPicture(BufferSet):
         """That the picture is of."""
         self._seen: Scene | None = None
         """That the surfaces are of."""
+        self.world_offset = np.zeros(3)
+        """(3,) meters from where the camera's place is counted (Scene.world_offset)."""
 
     @classmethod
     def expected_bytes(cls, sizes: object) -> dict[str, int]:
@@ -94,10 +97,10 @@ class SeenPicture(BufferSet):
         if self._seen is not None and self._seen.camera is scene.camera and same_places(self._seen, scene):
             return
         self.forget()
-        first_look.take(scene)
-        self.camera.upload(camera_view(scene.camera, 0, self.size[1], (0.0, 0.0)))
-        first_look.rasterize(self.framebuffer, scene, self.camera.buffer)
-        self._seen = scene
+        taken = first_look.take(scene)
+        self.camera.upload(camera_view(taken.camera, 0, self.size[1], (0.0, 0.0)))
+        first_look.rasterize(self.framebuffer, taken, self.camera.buffer)
+        self._seen, self.world_offset = scene, taken.world_offset
 
     def forget(self) -> None:
         """There is no picture any more."""
@@ -216,6 +219,7 @@ class Reprojection:
                 "new_count": 0.0 if new is None else new.samples,
                 "most_history": history,
                 "most_specular_history": min(history, _MOST_SPECULAR_HISTORY),
+                "way_of_origins": seen.world_offset - last.world_offset,
             },
         )
 

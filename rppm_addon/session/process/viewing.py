@@ -345,7 +345,9 @@ class Viewing:
     def _look(self) -> FirstLook:
         if self._first_look is None:
             built = self._mapper.device_scene
-            self._first_look = FirstLook(self._context, self._library, built.geometry, built.displacement.as_known)
+            self._first_look = FirstLook(
+                self._context, self._library, built.geometry, built.displacement.as_known, built.centering.centered
+            )
         return self._first_look
 
     def _while_compiling(self, name: str) -> None:

@@ -36,7 +36,8 @@ void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 obje
 
 // Coordinates in the space of another object, whose world-to-object rows are the inputs.
 void node_object_coord(Surface surface, vec3 row0, vec3 row1, vec3 row2, vec3 offset, out vec3 object) {
-    object = vec3(dot(row0, surface.position), dot(row1, surface.position), dot(row2, surface.position)) + offset;
+    vec3 at = world_position(surface);
+    object = vec3(dot(row0, at), dot(row1, at), dot(row2, at)) + offset;
 }
 
 void node_uvmap(Surface surface, uint layer, out vec3 uv) { uv = vec3(attribute_value(surface, layer).xy, 0.0); }
@@ -59,7 +60,7 @@ void node_random_per_island(Surface surface, uint layer, out float random) {
 
 void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out vec3 tangent,
                        out vec3 true_normal, out vec3 incoming, out vec3 parametric, out float backfacing) {
-    position = surface.position;
+    position = world_position(surface);
     normal = surface.normal;
     true_normal = surface.geometric;
     incoming = surface.viewer;
@@ -81,7 +82,7 @@ void node_tangent(Surface surface, int direction_type, int axis, uint layer, out
 void node_object_info(Surface surface, float material_index, out vec3 location, out vec3 color, out float alpha,
                       out float object_index, out float material_index_out, out float random) {
     ShadingInstance at = shading_instances[surface.instance == NO_INSTANCE ? 0u : surface.instance];
-    location = at.location;
+    location = at.location + parameters.world_origin;
     color = at.color.rgb;
     alpha = at.color.a;
     object_index = float(at.object_index);
@@ -118,7 +119,7 @@ void node_hair_info(Surface surface, out float is_strand_out, out vec3 tangent_n
 void node_point_position(Surface surface, uint layer, out vec3 position) {
     position = vec3(0.0);
     if (attribute_place(surface, layer).y == 0u) return;
-    position = surface.position
+    position = world_position(surface)
                + direction_to_world(surface, attribute_value(surface, layer).xyz
                                              - point_to_object(surface, surface.position));
 }

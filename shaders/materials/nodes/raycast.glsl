@@ -12,10 +12,12 @@ void node_raycast(Surface surface, int only_local, uint place, uint level, vec3 
     float size = length(direction);
     if (parameters.ray_stride > 0u && reach > 0.0 && size > 0.0) {
         uint kind = only_local != 0 ? QUESTION_LOCAL_RAYCAST : QUESTION_RAYCAST;
-        if (position == surface.position) kind |= QUESTION_FROM_SURFACE;
+        bool from_surface = position == world_position(surface);
+        if (from_surface) kind |= QUESTION_FROM_SURFACE;
         vec3 normal = found_by_rays(place, level, kind, 1u, direction / size, reach * size);
         uint beside = parameters.ray_stride * path_of_node_rays + place + 1u;
-        if (parameters.ray_level == level) node_rays[beside].direction = position;
+        if (parameters.ray_level == level)
+            node_rays[beside].direction = from_surface ? surface.position : position - parameters.world_origin;
         vec3 found = node_rays[beside].found;
         // Until then it is of another hit, maybe on a triangle that is no more.
         if (parameters.ray_level > level && found.y > 0.0) {

@@ -5,23 +5,25 @@
 #include <VectorTransforms>
 
 vec3 object_to_world(Surface surface, int vector_type, vec3 v) {
-    if (vector_type == TRANSFORM_POINT) return direction_to_world(surface, v - point_to_object(surface, vec3(0.0)));
+    if (vector_type == TRANSFORM_POINT)
+        return direction_to_world(surface, v - point_to_object(surface, vec3(0.0))) + parameters.world_origin;
     return vector_type == TRANSFORM_VECTOR ? direction_to_world(surface, v) : normal_to_world(surface, v);
 }
 
 vec3 world_to_object(Surface surface, int vector_type, vec3 v) {
-    if (vector_type == TRANSFORM_POINT) return point_to_object(surface, v);
+    if (vector_type == TRANSFORM_POINT) return point_to_object(surface, v - parameters.world_origin);
     return vector_type == TRANSFORM_VECTOR ? direction_to_object(surface, v) : normal_to_object(surface, v);
 }
 
 // Cameras are not scaled: the transposed rotation is the inverse.
 vec3 camera_to_world(int vector_type, vec3 v) {
     v.z = -v.z;
-    if (vector_type == TRANSFORM_POINT) v -= parameters.world_to_camera[3].xyz;
-    return v * mat3(parameters.world_to_camera);
+    if (vector_type != TRANSFORM_POINT) return v * mat3(parameters.world_to_camera);
+    return (v - parameters.world_to_camera[3].xyz) * mat3(parameters.world_to_camera) + parameters.world_origin;
 }
 
 vec3 world_to_camera(int vector_type, vec3 v) {
+    if (vector_type == TRANSFORM_POINT) v -= parameters.world_origin;
     v = (parameters.world_to_camera * vec4(v, vector_type == TRANSFORM_POINT ? 1.0 : 0.0)).xyz;
     return vec3(v.xy, -v.z);
 }

@@ -119,7 +119,7 @@ def test_light_nodes_of_place_and_direction_at_once(scene):
     assert any('Light "Light": its nodes vary by place and by direction' in text for text in export(scene).warnings)
 
 
-@pytest.mark.parametrize("values", [{"energy": 0.0}, {"energy": -5.0}, {"color": (0.0, 0.0, 0.0)}])
+@pytest.mark.parametrize("values", [{"energy": 0.0}, {"color": (0.0, 0.0, 0.0)}])
 def test_lights_without_power_are_left_out(scene, values):
     add_light(scene, "POINT", **values)
     assert export(scene).lights == []

@@ -18,7 +18,7 @@ from rppm_addon.scene import DensityEstimation, DirectLight, Mesh, RenderSetting
 
 SIDES = 32
 SEGMENTS = 12
-"""Of photon and camera paths."""
+"""Segments of photon and camera paths."""
 
 
 def frustum(name: str, bottom: float, top: float, height: float) -> Mesh:

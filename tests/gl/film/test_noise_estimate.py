@@ -68,6 +68,16 @@ def test_the_half_is_the_mean_of_its_iterations(mapper, other_mapper, monkeypatc
         other_mapper.measure_noise()
 
 
+def test_light_that_is_taken_away_is_as_noisy(mapper):
+    told = []
+    for sign in (1.0, -1.0):
+        scene = noisy_room(filter_width=0.0)
+        scene.lights = [dataclasses.replace(light, strength=sign * light.strength) for light in scene.lights]
+        iterated(mapper, scene, 32)
+        told.append(mapper.measure_noise())
+    assert told[1] == pytest.approx(told[0], rel=1e-3) and told[0] < 1.0
+
+
 def test_the_noise_told_is_that_there_is(mapper):
     """Or more: where points fill their space evenly, the error of n of them falls with between the root of n and n, and
     what two runs tell is once to sqrt(2) times that of all. Beside that 15 %, for distances of 1000 pixels of 12 seeds.

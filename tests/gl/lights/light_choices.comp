@@ -23,7 +23,7 @@ void main() {
             all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
         PassedLights passed = passed_lights(origin, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0,
-                                            0u, 0.0);
+                                            0u, 0.0, vec3(0.0));
         results[index] = vec4(passed.radiance.xy, all.xy);
         return;
     }

@@ -181,6 +181,19 @@ def test_portals_of_a_black_world_are_none(mapper):
     assert not mapper.film.read_radiance()[..., :3].any()
 
 
+def test_portals_of_a_world_that_takes_light_away_are_as_good(mapper):
+    seen = []
+    for sign in (1.0, -1.0):
+        scene = with_portals("in the hole", photons=1024)
+        scene.world.radiance = sign * np.ones(3)
+        mapper.build(scene)
+        for _ in range(2):
+            mapper.iterate()
+        assert len(mapper.device_scene.lights.portals.records) == 1
+        seen.append(mapper.film.read_radiance()[..., :3])
+    np.testing.assert_allclose(-seen[1], seen[0], rtol=1e-3, atol=1e-5)
+
+
 @pytest.mark.long
 def test_it_goes_on_bit_for_bit(mapper, other_mapper):
     """With what was learned of how many photons portals get."""

@@ -50,3 +50,26 @@ def test_a_floor_close_to_a_large_glowing_panel_gets_all_its_light(renderer, gap
     seen = renderer.render(scene).frame.combined[..., :3]
     # The light of a direction is 2 cos(angle) times the mean, of variance 1 / 3 and more by the choice of a triangle.
     assert seen.mean() == pytest.approx(0.5, rel=4.0 * np.sqrt(0.5 / (8 * PIXELS**2)))
+
+
+def test_a_lamp_nearer_behind_a_transparent_card_than_rays_begin_off_it_shines_through(renderer):
+    height, gap = 1e-3, 2e-6
+    clear = material("clear", Lobe(LobeKind.TRANSPARENT))
+    camera = _from_above(0.75 * height, 0.1 * height)
+    camera.clip_start = 0.01 * height
+    card = Instance(0, placed(0, 0, height - gap), [1], visibility=RayVisibility.ALL & ~RayVisibility.CAMERA)
+    with_card, without = (
+        renderer.render(
+            Scene(
+                camera,
+                [_square(5.0)],
+                [Instance(0, np.eye(4), [0]), *cards],
+                [diffuse(0.8, 0.8, 0.8), clear],
+                [Light("lamp", LightKind.POINT, placed(0, 0, height), np.full(3, 1e-6))],
+                settings=RenderSettings(iterations=1, photons=64, filter_width=0.0),
+            )
+        ).frame.combined[..., :3]
+        for cards in ([card], [])
+    )
+    assert (without > 0.0).all()
+    np.testing.assert_allclose(with_card, without, rtol=1e-4)

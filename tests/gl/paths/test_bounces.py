@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many bounces and transparent surfaces lie on the way of light to the camera, against closed forms."""
+"""Bounces and transparent surfaces on the way of light to the camera, against closed forms."""
 
 import dataclasses
 

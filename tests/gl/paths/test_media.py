@@ -8,12 +8,12 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene, World
+from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene, Texels, World
 
 ABSORPTION = np.array([0.0, 0.5, 0.8])
 """1/m."""
 SHINING = np.array([0.4, 0.7, 1.0])
-"""Of media, W/(m^3 sr)."""
+"""Emission of media, W/(m^3 sr)."""
 SIZE, HALF = 8, 0.3
 """Pixels of a side, and half of what they see at distance 1, m."""
 CLEAR, GLOW, WHITE = 0, 1, 2
@@ -25,6 +25,8 @@ def body_of(surface: Lobe, absorption: np.ndarray | None = ABSORPTION, glow: np.
 
 
 TRANSPARENT = Lobe(LobeKind.TRANSPARENT)
+NEXT_TO_NOTHING = np.full(3, 1e-12)
+"""Absorption, 1/m, that leaves all light, of a medium that stops shadow rays as every other does."""
 GLASS = Lobe(LobeKind.GLASS, ior=1.0)
 
 
@@ -103,7 +105,7 @@ def test_light_of_a_lamp_within_a_body(renderer, mode):
 
     made = [
         scene_of((0, at(0.0, 4.0), CLEAR), (1, at(-1.0, 0.5), WHITE), body=body, lights=[lamp], **settings)
-        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, None))
+        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, NEXT_TO_NOTHING))
     ]
     ratio = picture(renderer, made[0]) / picture(renderer, made[1])
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
@@ -118,7 +120,7 @@ def test_light_of_a_lamp_outside_a_body(renderer):
     settings = {"photons": 40000, "iterations": 4, "use_final_gather": False}
     made = [
         scene_of((0, at(-2.5, 2.0), CLEAR), (1, at(-1.0, 0.5), WHITE), body=body, lights=[lamp], **settings)
-        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, None))
+        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, NEXT_TO_NOTHING))
     ]
     within, plain = (picture(renderer, scene) for scene in made)
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
@@ -137,10 +139,10 @@ def test_light_through_a_body_in_a_body(renderer, surface):
     within, plain = (
         scene_of((0, at(0.0, 4.0), CLEAR), (0, at(-0.5, 0.25), 3), (1, at(-1.0, 0.5), WHITE),
                  body=body_of(surface, absorption), lights=[lamp], **settings)
-        for absorption in (ABSORPTION, None)
+        for absorption in (ABSORPTION, NEXT_TO_NOTHING)
     )  # fmt: skip
     within.materials.append(material("other", surface, absorption=other))
-    plain.materials.append(material("other", surface))
+    plain.materials.append(material("other", surface, absorption=NEXT_TO_NOTHING))
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
     to_lamp = np.sqrt(4 + x**2 + x[:, None] ** 2)[..., None]
     seen = (np.abs(x) < 0.2) & (np.abs(x[:, None]) < 0.2)  # rays that go through top and bottom
@@ -155,7 +157,7 @@ def test_a_tinted_bulb(renderer):
 
     made = [
         scene_of((2, at(0.5, 0.4), CLEAR), (1, at(-1.0), WHITE), body=body, lights=[lamp], **settings)
-        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, None))
+        for body in (body_of(TRANSPARENT), body_of(TRANSPARENT, NEXT_TO_NOTHING))
     ]
     ratio = picture(renderer, made[0]) / picture(renderer, made[1])
     np.testing.assert_allclose(ratio, np.broadcast_to(passed(0.4), ratio.shape), rtol=2e-3)
@@ -242,3 +244,40 @@ def test_a_body_that_shines_lights_surfaces(renderer):
     expected = SHINING / 2.0 * passed(far * rays(), absorption) + shone(far * rays(), absorption)
     found = picture(renderer, scene).mean(axis=(0, 1))
     np.testing.assert_allclose(found, expected.mean(axis=(0, 1)), rtol=0.01)
+
+
+@pytest.mark.parametrize("side", [0, 1], ids=["below", "above"])
+def test_texels_lie_before_their_body(renderer, side):
+    """Light that comes to the faces of a body from outside is as if there were nothing inside."""
+    lamp = Light("lamp", LightKind.POINT, scenes.placed(0.0, 0.0, 3.0 if side else -3.0), np.full(3, 10.0))
+    mesh = box()
+    centers = mesh.positions[mesh.corner_vertices[mesh.triangle_corners]].mean(axis=1)
+    triangle = int(np.argmax(centers[:, 2] if side else -centers[:, 2]))
+    texels = Texels(
+        instance=0,
+        triangles=np.full((SIZE, SIZE), triangle, np.int32),
+        barycentrics=np.random.default_rng(4).uniform(0.05, 0.45, (SIZE, SIZE, 2)).astype(np.float32),
+        differentials=np.zeros((SIZE, SIZE, 4), np.float32),
+    )
+    camera = Camera(np.eye(4), (0.0, SIZE, 0.0, SIZE), SIZE, SIZE, orthographic=True, texels=texels)
+    surface = Lobe(LobeKind.DIFFUSE, color=(0.8, 0.8, 0.8))
+    filled, empty = (
+        picture(renderer, scene_of((0, at(0.0), CLEAR), body=body_of(surface, inside), camera=camera, lights=[lamp]))
+        for inside in (ABSORPTION, None)
+    )
+    assert (empty > 0.0).all()
+    np.testing.assert_allclose(filled, empty, rtol=1e-5)
+
+
+def test_texels_of_the_world_are_in_no_body(renderer):
+    texels = Texels(
+        instance=0,
+        triangles=np.zeros((SIZE, SIZE), np.int32),
+        barycentrics=np.full((SIZE, SIZE, 2), 0.3, np.float32),
+        differentials=np.zeros((SIZE, SIZE, 4), np.float32),
+        see_environment=True,
+    )
+    camera = Camera(np.eye(4), (0.0, SIZE, 0.0, SIZE), SIZE, SIZE, orthographic=True, texels=texels)
+    scene = scene_of((0, at(0.0), CLEAR), camera=camera)
+    scene.world = World(np.array([0.2, 0.4, 0.6]))
+    np.testing.assert_allclose(picture(renderer, scene), np.broadcast_to([0.2, 0.4, 0.6], (SIZE, SIZE, 3)), rtol=1e-5)

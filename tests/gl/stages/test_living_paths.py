@@ -63,6 +63,28 @@ def test_lists_hold_what_lives(context, library, count):
     taken.release()
 
 
+@pytest.mark.parametrize("is_software", [True, False])
+def test_a_device_is_asked_once_in_a_segment(context, library, monkeypatch, is_software):
+    """A GPU in every fourth."""
+    paths = LivingPaths(context, library, "paths", "take fewer")
+    paths.require(64, to_keep=True)
+    paths.fill(64)
+    lived, asked = {number: 64 - number for number in range(9)}, []
+
+    def count(_: LivingPaths) -> int:
+        asked.append(now)
+        return lived[now]
+
+    with monkeypatch.context() as patch:
+        patch.setattr(LivingPaths, "read_count", count)
+        patch.setitem(vars(context), "is_software", is_software)
+        for now in lived:
+            known = lived[now if is_software else now - now % 4]
+            assert (paths.bound(now), paths.bound(now)) == (known, known)
+    assert asked == (list(range(1, 9)) if is_software else [4, 8])
+    paths.release()
+
+
 def test_long_lists_are_dispatched_in_rows(context, library):
     """One group more than a row of them holds."""
     count = 65535 * 64 + 1

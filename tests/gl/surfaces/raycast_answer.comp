@@ -7,6 +7,7 @@ layout(local_size_x = 1) in;
 #include <RaycastAnswerParameters>
 layout(std140, binding = 0) uniform Parameters { RaycastAnswerParameters parameters; };
 struct Surface { vec3 position; };
+vec3 world_position(Surface surface) { return surface.position + parameters.world_origin; }
 #include "materials/node_rays.glsl"
 #include "materials/nodes/raycast.glsl"
 layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };

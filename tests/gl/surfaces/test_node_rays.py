@@ -25,7 +25,7 @@ from rppm_addon.scene import (
 )
 
 SAMPLES, ITERATIONS, SIDE = 64, 4, 8
-Record("RaycastAnswerParameters", ray_stride="uint", ray_level="uint", ray_levels="uint")
+Record("RaycastAnswerParameters", world_origin="vec3", ray_stride="uint", ray_level="uint", ray_levels="uint")
 SHADER = str(Path(__file__).parent / "raycast_answer.comp")
 
 
@@ -172,7 +172,8 @@ def test_a_raycast_meets_nothing_until_it_was_traced(context, library, level):
     left["found"], left["direction"], left["reach"] = (1.0, 1.0, 0.0), (0.25, 0.25, 7.0), 3.0
     rays, results = context.moderngl.buffer(left.tobytes()), context.moderngl.buffer(reserve=16)
     blocks = {"NodeRays": rays, "Results": results}
-    library.compute(SHADER).run(1, blocks, {"ray_stride": 2, "ray_level": level, "ray_levels": 1})
+    parameters = {"world_origin": (0.0, 0.0, 0.0), "ray_stride": 2, "ray_level": level, "ray_levels": 1}
+    library.compute(SHADER).run(1, blocks, parameters)
     assert np.frombuffer(results.read(), np.float32).tolist() == ([7.0, 3.0, 1.0, 1.0] if level else [0.0] * 4)
     rays.release()
     results.release()

@@ -112,6 +112,16 @@ def test_noise_is_filtered_and_light_stays(mapper, pictures):
     np.testing.assert_array_equal(pictures.show(scene, mapper.film, 1), shown)
 
 
+def test_light_that_is_taken_away_is_filtered_like_light(mapper, pictures):
+    shown = []
+    for sign in (1.0, -1.0):
+        scene = lit_floor()
+        scene.lights = [dataclasses.replace(light, strength=sign * light.strength) for light in scene.lights]
+        render(mapper, scene, 16)
+        shown.append(pictures.show(scene, mapper.film, 16)[..., :3])
+    np.testing.assert_allclose(-shown[1], shown[0], rtol=1e-3, atol=1e-4)
+
+
 def test_photons_are_left_as_they_are(mapper, pictures):
     """So are caustics: with direct light by photons, all light but that of what shines is theirs."""
     scene = room(direct_light="PHOTONS", use_final_gather=False)

@@ -5,8 +5,7 @@ import itertools
 
 import numpy as np
 
-from rppm_addon.integrator.surfaces.geometry import placed_boxes
-from rppm_addon.integrator.surfaces.surface_attributes import _inverses
+from rppm_addon.integrator.surfaces.geometry import affine_inverses, placed_boxes
 
 
 def affine(count: int) -> np.ndarray:
@@ -39,7 +38,7 @@ def test_boxes_that_cannot_be_rendered_are_told():
 def test_inverses_are_numpys_and_zero_without_extent():
     matrices = affine(50)
     matrices[7, :3, 1] = 0.0
-    inverses = _inverses(matrices)
+    inverses = affine_inverses(matrices)
     assert not inverses[7].any()
     whole = np.delete(np.arange(50), 7)
     np.testing.assert_allclose(inverses[whole], np.linalg.inv(matrices[whole])[:, :3], rtol=1e-9, atol=1e-9)

@@ -313,7 +313,7 @@ def test_a_ray_from_anywhere_takes_two_places_of_what_is_found():
     graph.normal = graph.add("raycast", "hit_normal")
     compiled = compile_graph(graph)
     assert compiled.rays == NodeRayCounts(3, 2, 5, True) and not compile_graph(occluded()).rays.casts
-    assert "node_raycast(surface, 0, 0u, 0u, surface.position, surface.normal," in compiled.text
+    assert "node_raycast(surface, 0, 0u, 0u, world_position(surface), surface.normal," in compiled.text
     assert "node_ambient_occlusion(surface, 0, 0, 2u, 1u," in compiled.text
 
 

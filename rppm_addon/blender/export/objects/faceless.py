@@ -12,6 +12,8 @@ class FacelessObjects:
     def __init__(self) -> None:
         self._names: dict[int, str] = {}
         """By session_uid."""
+        self._with_nodes: set[int] = set()
+        self._multiplied: set[int] = set()
         self._bringers: set[int] = set()
 
     def note(self, source: bpy.types.Object) -> None:
@@ -19,6 +21,13 @@ class FacelessObjects:
         original = source.original
         if original.type == "MESH" and len(original.data.polygons) > 0:
             self._names[original.session_uid] = source.name
+            if any(modifier.type == "NODES" for modifier in source.modifiers):
+                self._with_nodes.add(original.session_uid)
+
+    def is_multiplied(self, uid: int) -> None:
+        """Take note that another object shows instances of the object of this session_uid. Blender attributes what its
+        own geometry nodes bring to that other object, too."""
+        self._multiplied.add(uid)
 
     def brings_others(self, uid: int) -> None:
         """Take note that the object of this session_uid shows instances, strands or points."""
@@ -26,7 +35,8 @@ class FacelessObjects:
 
     def tell(self, report: Report) -> None:
         """Have the report name those of which nothing is seen."""
-        names = [name for uid, name in self._names.items() if uid not in self._bringers]
+        others = self._bringers | (self._multiplied & self._with_nodes)
+        names = [name for uid, name in self._names.items() if uid not in others]
         if names:
             what = f"Object {listed(names)}: its" if len(names) == 1 else f"Objects {listed(names)}: their"
             report.warn(f"{what} modifiers leave no faces, so nothing is rendered; look at them in the Modifiers tab")

@@ -259,6 +259,7 @@ class ObjectPass:
         if kind is None:
             kind = self._kinds[key] = _Kind(source.original.session_uid)
             self._multiple.add(kind.uid)
+            self._faceless.is_multiplied(kind.uid)
         if not (owner.shown and instance.show_self) or not (owner.visibility or source.type == "LIGHT"):
             return
         if self._reader.culling.leaves_out(source, matrix):
