@@ -141,7 +141,8 @@ def _is_plain(graph: NodeGraph, node: ShaderNode) -> bool:
     """Whether an image lies in the map pixel on pixel."""
     where = node.inputs.get("vector")
     linear = node.options.get("interpolation", "Linear") == "Linear"
-    equirectangular = node.kind == "tex_environment" and node.options.get("projection") in {None, "EQUIRECTANGULAR"}
+    projections = {None, "EQUIRECTANGULAR", "SKY"}
+    equirectangular = node.kind == "tex_environment" and node.options.get("projection") in projections
     direction = isinstance(where, Link) and (graph.nodes[where.node].kind, where.output) in _DIRECTIONS
     return linear and equirectangular and direction
 

@@ -86,6 +86,11 @@ void node_tex_environment(int projection, int interpolation, uint image, vec3 ve
     vec2 at;
     if (projection == ENVIRONMENT_EQUIRECTANGULAR)
         at = vec2(-atan(d.y, d.x) / (2.0 * PI) + 0.5, atan(d.z, length(d.xy)) / PI + 0.5);
+    else if (projection == ENVIRONMENT_SKY)
+        // Of a vector of any length z alone says how high it points, as in Cycles. The outermost of the 256 rows
+        // (sky_picture) are not mixed with those of the other pole.
+        at = vec2(-atan(d.y, d.x) / (2.0 * PI) + 0.5,
+                  clamp(asin(clamp(vector.z, -1.0, 1.0)) / PI + 0.5, 1.0 / 512.0, 511.0 / 512.0));
     else {
         d.y -= 1.0;
         float divided = 2.0 * sqrt(max(-0.5 * d.y, 0.0));

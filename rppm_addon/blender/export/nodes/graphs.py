@@ -272,10 +272,13 @@ class GraphExporter:
 
     def coordinates_of(self, node: bpy.types.Node, path: Path) -> object:
         """What the Vector input of a texture node gets."""
+        socket = self.given_coordinates(node, path)
+        return self.implicit_coordinates(node) if socket is None else self.value(socket, path)
+
+    def given_coordinates(self, node: bpy.types.Node, path: Path) -> bpy.types.NodeSocket | None:
+        """The Vector input of a texture node, where something else than the implicit coordinates is given to it."""
         socket = next((socket for socket in node.inputs if socket.identifier == "Vector"), None)
-        if socket is None or not self.is_given(socket, path):
-            return self.implicit_coordinates(node)
-        return self.value(socket, path)
+        return None if socket is None or not self.is_given(socket, path) else socket
 
     def implicit_coordinates(self, node: bpy.types.Node) -> Link:
         """Where a texture is placed without a link."""

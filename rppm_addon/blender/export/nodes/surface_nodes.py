@@ -297,7 +297,9 @@ def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.type
     name = exporter.name_of(node)
     image = exporter.images.computed((name, sky), lambda: _sky_image(name, sky))
     vector = exporter.coordinates_of(node, path)
-    link = exporter.graph.add("tex_environment", "color", name=name, image=image, vector=vector)
+    is_direction = exporter.is_world and exporter.given_coordinates(node, path) is None
+    options = {} if is_direction else {"projection": "SKY"}
+    link = exporter.graph.add("tex_environment", "color", name=name, options=options, image=image, vector=vector)
     exporter.skies[link.node] = sky
     return link
 
