@@ -18,6 +18,7 @@ from .rows import Kind, Row
 
 BATCHES, CYCLES_SEEDS = 4, 2
 LIGHT = {
+    "max_bounces": 64, "transparent_max_bounces": 64,  # as Cycles' in these scenes
     "iterations": 24, "photons": 2048, "camera_path_length": 4, "photon_path_length": 4,
 }  # fmt: skip
 VALUES = {

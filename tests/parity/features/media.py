@@ -98,7 +98,7 @@ def _camera_half_within() -> None:
 
 
 def _absorbing_ball() -> bpy.types.Material:
-    light("AREA", 60.0, place(**ABOVE), size=0.8)
+    light("AREA", 60.0, place(**ABOVE), size=2.5)
     return body("Amber", AMBER, 1.5)
 
 
