@@ -19,7 +19,9 @@ def shader(kind, inputs, **properties):
 
 for _component in ("Reflection", "Transmission"):
     _inputs = COLOR | {"RoughnessV": 0.4}
-    lit("Hair", _component, shader("BsdfHair", _inputs, component=_component), settings=LONG, effort=2)
+    # Of fewer photons the noise is as large as what is compared.
+    _settings = LONG | {"photons": 8192}
+    lit("Hair", _component, shader("BsdfHair", _inputs, component=_component), settings=_settings, effort=2)
 for _model in ("CHIANG", "HUANG"):
     lit(
         "Principled Hair",
