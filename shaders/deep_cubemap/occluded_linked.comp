@@ -21,8 +21,9 @@ layout(std430, binding = 5) restrict readonly buffer LightTriangles;
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
+    Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
     shadow_sets = light_links[code_number(contributions[index].w)].shadow_sets;
     if (shadow_sets == uvec2(0u)) visibility[index] = 1u;
-    else visibility[index] = deep_cubemap_occluded(rays[index]) ? 0u : 1u;
+    else visibility[index] = deep_cubemap_occluded(ray) ? 0u : 1u;
 }

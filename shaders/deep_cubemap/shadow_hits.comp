@@ -16,6 +16,7 @@ layout(std430, binding = 5) restrict readonly buffer LightTriangles;
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
+    Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
-    hits[index] = deep_cubemap_hit(rays[index]);
+    hits[index] = deep_cubemap_hit(ray);
 }

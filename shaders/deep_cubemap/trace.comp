@@ -13,5 +13,7 @@ layout(std430, binding = 2) restrict writeonly buffer Hits;
 
 void main() {
     uint index = living_path();
-    if (index != NO_PATH) hits[index] = deep_cubemap_hit(rays[index]);
+    if (index == NO_PATH) return;
+    Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
+    hits[index] = deep_cubemap_hit(ray);
 }

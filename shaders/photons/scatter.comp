@@ -21,7 +21,7 @@ layout(std430, binding = 1) buffer Rays;
 layout(std430, binding = 2) buffer PhotonPaths;
 layout(std430, binding = 3) writeonly buffer Photons;
 layout(std430, binding = 4) writeonly buffer AdjointQueries;
-layout(std430, binding = 5) readonly buffer PhotonRange;
+layout(std430, binding = 11) readonly buffer PhotonRange;
 #include "photons/differentials.glsl"
 
 // unseen: a flag of direct photons from lights that do not take part in such events.
