@@ -102,7 +102,7 @@ def texel_records(camera: Camera, texels: Texels, placement: Placement, view: np
     chosen = np.ix_(np.clip(row.astype(int), 0, height - 1), np.clip(column.astype(int), 0, width - 1))
     records = TEXEL.zeros(rows * columns)
     triangles = texels.triangles[chosen].reshape(-1)
-    records["triangle"] = np.where(triangles >= 0, placement.first_triangle + triangles, NO_TRIANGLE)
+    records["triangle"] = np.where(triangles >= 0, placement.first_triangle + triangles, np.uint32(NO_TRIANGLE))
     second, third = texels.barycentrics[chosen].reshape(-1, 2).T
     differentials = texels.differentials[chosen].reshape(-1, 4)
     if np.linalg.det(placement.instance.matrix[:3, :3]) < 0.0:  # world triangles are then wound the other way round
