@@ -24,7 +24,7 @@ class Interior:
     emission: NodeGraph | None = None
     """In W/(m^3 sr)."""
     varies: bool = False
-    """Whether the coefficients may depend on the place."""
+    """True where the coefficients may depend on the place."""
 
     @classmethod
     def of(cls, graph: NodeGraph | None) -> "Interior":

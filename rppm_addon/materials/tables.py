@@ -97,9 +97,9 @@ class MaterialTables(BufferSet):
         self.materials_with_media: frozenset[int] = frozenset()
         """By index, those whose inside is filled."""
         self.media_emit = False
-        """Whether any medium shines."""
+        """True where any medium shines."""
         self.any_passes_shadow_rays = False
-        """Whether shadow rays may pass the surfaces of a material."""
+        """True where shadow rays may pass the surfaces of a material."""
         self.displacing: dict[int, DisplacingGraph] = {}
         """By index, those materials that move vertices."""
         self.users: dict[str, list[str]] = {}

@@ -6,7 +6,7 @@ from .emitted import is_positive, reachable
 
 
 def passes_shadow_rays(graph: NodeGraph) -> bool:
-    """Whether shadow rays may pass a surface, as far as the graph's structure and constants tell.
+    """True where shadow rays may pass a surface, as far as the graph's structure and constants tell.
 
     Glass that is transparent to shadow rays, the usual trick against black shadows, stops them: photons refract its
     light, which would be there twice.
@@ -16,7 +16,7 @@ def passes_shadow_rays(graph: NodeGraph) -> bool:
 
 
 def asks_for_shadow_rays(graph: NodeGraph) -> bool:
-    """Whether what passes a surface depends on whether a shadow ray comes to it."""
+    """True where what passes a surface depends on whether a shadow ray comes to it."""
     return passes_shadow_rays(graph) and _tells_shadow_rays(graph)
 
 

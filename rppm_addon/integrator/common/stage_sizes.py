@@ -46,7 +46,7 @@ class StageSizes:
     has_portals: bool = False
     """Whether portals say where the world's light comes in; likewise."""
     has_media: bool = False
-    """Whether materials fill the inside of what they are on."""
+    """True where any material fills the inside of what it is on."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":

@@ -125,7 +125,7 @@ class Lights(BufferSet):
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
         self.are_cut = False
-        """Whether surfaces lie within the radius of any soft light."""
+        """True where surfaces lie within the radius of any soft light."""
         self.links_lights = False
         """Whether any light does not shine on everything, or is not stopped by everything."""
         self.limits_bounces = False

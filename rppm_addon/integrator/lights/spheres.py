@@ -13,7 +13,7 @@ _MOST_TRIANGLES = 1 << 17
 
 
 def holds_surfaces(light: Light, scene: Scene, geometry: Geometry) -> bool:
-    """Whether triangles of the scene may lie within the radius of a light; geometry: the scene's.
+    """True where triangles of the scene may lie within the radius of a light; geometry: the scene's.
 
     Of spots without Soft Falloff it is not asked: what their spheres light from within gives no indirect light.
     """
@@ -36,7 +36,7 @@ def _distances_to_boxes(point: np.ndarray, low: np.ndarray, high: np.ndarray) ->
 
 
 def _reaches(mesh: Mesh, matrix: np.ndarray, center: np.ndarray, radius: float) -> bool:
-    """Whether planes and boxes of a placed mesh's triangles let any of these reach into a sphere."""
+    """True where planes and boxes of a placed mesh's triangles let any of these reach into a sphere."""
     points = mesh.positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3] - center
     corners = points[mesh.corner_vertices[mesh.triangle_corners]]
     near = _distances_to_boxes(np.zeros(3), corners.min(axis=1), corners.max(axis=1)) <= radius

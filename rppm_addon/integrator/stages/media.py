@@ -60,7 +60,7 @@ class Media(BufferSet):
             self._enter(context, importons.living, blocks, "media/enter_camera_paths.comp")
 
     def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
-        """Whether anything in the scene has a medium inside; finds where, and what is in it, for a new scene."""
+        """Find where media are, and what is in them, for a new scene; true where there are any."""
         if not self._has_media:
             return False
         if self._scene is not context.scene or iteration.number == 1:

@@ -17,7 +17,7 @@ _WELDED = 1e-6
 
 
 def is_closed(mesh: Mesh) -> bool:
-    """Whether each edge of a mesh is one of as many triangles from one side as from the other. Vertices at nearly the
+    """True where each edge of a mesh is one of as many triangles from one side as from the other. Vertices at nearly the
     same place are one, and triangles without area do not count."""
     positions = np.nan_to_num(mesh.positions)
     grid = max(float(np.ptp(positions, axis=0).max()) * _WELDED, 1e-30)
