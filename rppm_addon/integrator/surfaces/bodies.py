@@ -17,8 +17,10 @@ _WELDED = 1e-6
 
 
 def is_closed(mesh: Mesh) -> bool:
-    """True where each edge of a mesh is one of as many triangles from one side as from the other. Vertices at nearly the
-    same place are one, and triangles without area do not count."""
+    """True where each edge of a mesh is one of as many triangles from one side as from the other.
+
+    Vertices at nearly the same place are one, and triangles without area do not count.
+    """
     positions = np.nan_to_num(mesh.positions)
     grid = max(float(np.ptp(positions, axis=0).max()) * _WELDED, 1e-30)
     _, places = np.unique(np.round(positions / grid), axis=0, return_inverse=True)
