@@ -8,4 +8,4 @@ ROOT = Path(__file__).resolve().parents[1]
 """The checkout."""
 
 # They render scenes of the tests, whose modules find each other by name.
-sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/gl"), str(ROOT / "tests/gl/deep_cubemap")]
+sys.path[:0] = [str(ROOT / "tests"), str(ROOT / "tests/gl"), str(ROOT / "tests/gl/acceleration")]

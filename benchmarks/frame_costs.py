@@ -20,7 +20,7 @@ from support.held import HeldByFrame
 
 import rppm_addon
 from rppm_addon.gl.context import Context
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.session.observers import RenderObserver, observing
 
 from .machine import Clock, describe
@@ -117,7 +117,7 @@ def frame_times(size: int, side: int, frames: int, iterations: int, persistent: 
     scene = static_scene(side)
     times = Times()
     builds = []
-    build = DeepCubemap.build
+    build = Acceleration.build
     from rppm_addon.blender import engine
 
     render = engine.render_final
@@ -136,12 +136,12 @@ def frame_times(size: int, side: int, frames: int, iterations: int, persistent: 
         for handler, function in handlers:
             handler.append(function)
         engine.render_final = rendered
-        DeepCubemap.build = lambda *a, **k: (builds.append(True), build(*a, **k))[1]
+        Acceleration.build = lambda *a, **k: (builds.append(True), build(*a, **k))[1]
         try:
             with observing(times):
                 bpy.ops.render.render(animation=True)
         finally:
-            DeepCubemap.build, engine.render_final = build, render
+            Acceleration.build, engine.render_final = build, render
             for handler, function in handlers:
                 handler.remove(function)
     counted = times.frames[WARM_UP:]

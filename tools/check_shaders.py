@@ -61,7 +61,7 @@ LARGE = {
     *("Triangles", "Attributes", "TrianglesBefore", "TrianglesAfter", "AttributeValues", "ShadingInstances"),
     *("Positions", "CornerVertices", "CornerNormals", "CornerUvs", "TriangleCorners", "TriangleSlots", "Instances"),
     *("Materials", "MaterialData", "Images", "Texels", "EmissiveTriangles", "LightNodes"),
-    *("OverlapJobs", "NewFragments", "OldFragments", "BinnedFragments"),
+    *("BvhNodes", "OverlapJobs", "NewFragments", "OldFragments", "BinnedFragments"),
     *("Photons", "Closures", "SortedPhotons"),
 }
 """Blocks whose buffers may be larger than a storage block (gl/buffers.py)."""

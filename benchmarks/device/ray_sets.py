@@ -3,11 +3,11 @@
 
 import numpy as np
 
+from rppm_addon.integrator.acceleration.acceleration_structure import AccelerationStructure
 from rppm_addon.integrator.algorithm import trace_photons
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.common.living_paths import LivingPaths
 from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 
 KINDS = ("camera", "diffuse bounce", "photon")
@@ -66,7 +66,7 @@ def trace(mapper: ProgressivePhotonMapper, rays: np.ndarray) -> np.ndarray:
     ray_buffer, hits = gl.buffer(rays.tobytes()), gl.buffer(reserve=HIT.size * len(rays))
     living = LivingPaths(mapper.context, mapper._library, "rays to measure with", "take fewer")
     living.fill(len(rays))
-    mapper.deep_cubemap.trace(ray_buffer, hits, living)
+    mapper.acceleration.trace(ray_buffer, hits, living)
     result = np.frombuffer(hits.read(), HIT.dtype)
     for resource in (ray_buffer, hits, living):
         resource.release()
@@ -100,18 +100,18 @@ def _photon_rays(mapper: ProgressivePhotonMapper, count: int) -> np.ndarray:
 def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.ndarray]:
     """The rays of an iteration's photons that are to be traced, a RAY array a segment."""
     taken = []
-    plain = DeepCubemap.trace
+    plain = AccelerationStructure.trace
 
-    def take(cubemap, rays, hits, living):
+    def take(structure, rays, hits, living):
         records = np.frombuffer(rays.read(RAY.size * living.most), RAY.dtype)[np.sort(living.read())]
         taken.append(records[records["maximum_distance"] > 0.0])
-        plain(cubemap, rays, hits, living)
+        plain(structure, rays, hits, living)
 
-    DeepCubemap.trace = take
+    AccelerationStructure.trace = take
     try:
         this = Iteration(iteration, mapper.scene.settings.seed, mapper.scene.photon_count)
         for _ in trace_photons(mapper.device_scene.context, mapper.stages, this):
             pass
     finally:
-        DeepCubemap.trace = plain
+        AccelerationStructure.trace = plain
     return taken

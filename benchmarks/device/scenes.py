@@ -81,7 +81,7 @@ class Subject:
         camera = dataclasses.replace(scene.camera, width=64, height=48, crop=None)
         mapper.build(dataclasses.replace(scene, settings=settings, camera=camera))
         self.triangle_count = mapper.triangle_count
-        self.automatic_center = tuple(float(c) for c in mapper.device_scene.center)
+        self.automatic_center = tuple(float(c) for c in mapper.device_scene.acceleration.center)
         self._buffers: dict[int, dict] = {}
         self._listed = LivingPaths(self.context, library, "rays to measure with", "take fewer")
 

@@ -3,7 +3,7 @@
 
 import functools
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -18,7 +18,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
 """In the package where pip installed it, else beside it: in a checkout and in Blender's extension."""
 
-_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>)\s*$')
+_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+))\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _SHARED_BLOCK = re.compile(r"^(\s*layout\s*\(\s*std430\b[^)]*\)[\w\s]*?\bbuffer\s+(\w+))\s*;(.*)$")
 _BLOCK = re.compile(r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*(\d+)\s*\)[\w\s]*?\bbuffer\s+(\w+)")
@@ -89,7 +89,8 @@ def expand(
 ) -> Source:
     """Read a shader below the shader folder and resolve its includes.
 
-    ``#include "common/x.glsl"`` inserts a file once; ``#include <Ray>`` inserts the struct of the
+    ``#include "common/x.glsl"`` inserts a file once; ``#include TRAVERSAL`` inserts the file that the define of that
+    name is; ``#include <Ray>`` inserts the struct of the
     record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
     StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
     texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers;
@@ -134,8 +135,8 @@ def expand(
                 shared = StorageBlock.registry[match.group(2)]
                 structs = "".join(f"{declare(record.name)} " for record in shared.records)
                 lines.append(f"{structs}{match.group(1)} {{ {shared.members} }};{match.group(3)}")
-            elif match.group(1):
-                read(match.group(1), f"{name}:{line_number}")
+            elif not match.group(2):
+                read(_included_file(match, defines, f"{name}:{line_number}"), f"{name}:{line_number}")
                 lines.append(f"#line {line_number + 1} {number}")
             else:
                 wanted = match.group(2)
@@ -145,6 +146,15 @@ def expand(
 
     read(path, path)
     return _source(put_together(lines, whole) + "\n", files, DEFINE in defines, reads_texels, large)
+
+
+def _included_file(match: re.Match, defines: Mapping[str, object], includer: str) -> str:
+    """The file that an #include names, itself or by a define. Raises ShaderError where there is no such define."""
+    if match.group(1):
+        return str(match.group(1))
+    if match.group(3) not in defines:
+        raise ShaderError(f"{includer}: {match.group(3)} is not defined")
+    return str(defines[match.group(3)])
 
 
 @functools.lru_cache(maxsize=512)

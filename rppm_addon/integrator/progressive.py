@@ -13,6 +13,7 @@ from ..gl.timers import StageTimers
 from ..scene.garbage import collector_paused
 from ..scene.scene import Scene
 from ..scene.settings import DensityEstimation, FirstPhotonHits
+from .acceleration.acceleration_structure import AccelerationStructure
 from .algorithm import iterate, store_photons, trace_photons
 from .common.iteration import LEARNING_ITERATIONS, Iteration, learns_after
 from .common.known import known
@@ -46,7 +47,7 @@ class ProgressivePhotonMapper:
         self.build_seconds = 0.0
 
     def build(self, scene: Scene) -> None:
-        """Init(): take a scene, allocate its buffers and build the deep cubemap.
+        """Init(): take a scene, allocate its buffers and build the acceleration structure.
 
         Raises SettingsError, SceneError or DeviceError, each with its remedy.
         """
@@ -230,12 +231,19 @@ class ProgressivePhotonMapper:
         return self.stages.photons.read()
 
     @property
+    def acceleration(self) -> AccelerationStructure:
+        """What the scene's rays are traced through."""
+        return self.device_scene.acceleration.structure
+
+    @property
     def deep_cubemap(self) -> DeepCubemap:
-        """The scene's, to be looked at."""
-        return self.device_scene.deep_cubemap
+        """The scene's, where rays are traced through one. Raises TypeError where they are not."""
+        if not isinstance(self.acceleration, DeepCubemap):
+            raise TypeError("rays are not traced through a deep cubemap")
+        return self.acceleration
 
     def build_deep_cubemap(self, scene: Scene) -> None:
-        """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as build does."""
+        """Take a scene and build its deep cubemap, to be looked at: nothing can be rendered. Raises as build does."""
         self._begin(scene)
         self.device_scene.upload_geometry(scene)
 

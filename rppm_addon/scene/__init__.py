@@ -11,13 +11,21 @@ from .motion import CameraMovement, Deformation, Movement, Shutter
 from .moving_scene import MovingScene
 from .node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from .scene import Scene
-from .settings import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilter, RenderSettings
+from .settings import (
+    AccelerationStructure,
+    DensityEstimation,
+    DirectLight,
+    FirstPhotonHits,
+    PixelFilter,
+    RenderSettings,
+)
 from .storage import load_scene, save_scene
 
 __all__ = [
     "ALL_SETS",
     "LIGHT_SETS",
     "UNLIMITED_BOUNCES",
+    "AccelerationStructure",
     "AovOutput",
     "Aperture",
     "AttributeDomain",

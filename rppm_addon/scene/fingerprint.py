@@ -23,6 +23,7 @@ UNSEEN = frozenset(
         "iterations_per_frame",
         "density_estimation",
         "first_photon_hits",
+        "acceleration_structure",
         "denoising_start_sample",
     }
 )

@@ -56,6 +56,17 @@ class DensityEstimation(enum.Enum):
     """Photons are gathered from hashed grids."""
 
 
+class AccelerationStructure(enum.Enum):
+    """What rays are traced through: the same hits, at different speed."""
+
+    AUTOMATIC = "AUTOMATIC"
+    """The BVH where the processor stands in for a GPU, otherwise the deep cubemap."""
+    DEEP_CUBEMAP = "DEEP_CUBEMAP"
+    """Built by rasterization, as in the paper."""
+    BVH = "BVH"
+    """A bounding volume hierarchy."""
+
+
 class FirstPhotonHits(enum.Enum):
     """How the first hits of photons are found: the same ones, at different speed."""
 
@@ -64,7 +75,7 @@ class FirstPhotonHits(enum.Enum):
     RASTERIZED = "RASTERIZED"
     """Point lights, spots and suns rasterize what they see, as in the paper."""
     TRACED = "TRACED"
-    """Through the deep cubemap, like all later segments."""
+    """Through the acceleration structure, like all later segments."""
 
 
 class PixelFilter(enum.Enum):
@@ -311,7 +322,26 @@ class RenderSettings:
                 "Rasterized",
                 "Rasterize what point lights, spots and suns see, as the paper does",
             ),
-            FirstPhotonHits.TRACED: ("Traced", "Trace rays through the deep cubemap"),
+            FirstPhotonHits.TRACED: ("Traced", "Trace rays, as for all later hits"),
+        },
+    )
+    acceleration_structure: AccelerationStructure = setting(
+        AccelerationStructure.AUTOMATIC,
+        "Acceleration Structure",
+        "What rays are traced through: any structure gives the same picture",
+        choices={
+            AccelerationStructure.AUTOMATIC: (
+                "Automatic",
+                "The BVH where the processor stands in for a GPU, otherwise the deep cubemap",
+            ),
+            AccelerationStructure.DEEP_CUBEMAP: (
+                "Deep Cubemap",
+                "A cubemap of lists of triangles, which is built by rasterization, as in the paper",
+            ),
+            AccelerationStructure.BVH: (
+                "BVH",
+                "A bounding volume hierarchy, which the processor builds; it takes less memory",
+            ),
         },
     )
     iterations_per_frame: int = setting(

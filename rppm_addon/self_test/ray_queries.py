@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rays through a deep cubemap and past all of its triangles, with NumPy in and out."""
+"""Rays through an acceleration structure and past all of its triangles, with NumPy in and out."""
 
 from collections.abc import Callable
 
@@ -9,6 +9,7 @@ import numpy as np
 from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
+from ..integrator.acceleration.acceleration_structure import AccelerationStructure
 from ..integrator.common.living_paths import LivingPaths
 from ..integrator.common.records import HIT, NO_TRIANGLE, RAY
 from ..integrator.deep_cubemap.deep_cubemap import DeepCubemap
@@ -30,7 +31,7 @@ def ray_records(origins: np.ndarray, directions: np.ndarray, maximum_distance: f
 
 
 class TracedTriangles:
-    """Triangles on the device and their deep cubemap; a context manager."""
+    """Triangles on the device and their acceleration structure; a context manager."""
 
     def __init__(
         self,
@@ -42,29 +43,31 @@ class TracedTriangles:
         rasterize: bool | None = True,
         texel_buffers: bool | None = None,
         most_clustered: int | None = None,
+        structure: AccelerationStructure | None = None,
     ) -> None:
-        """triangles: (n, 3, 3) vertices; the other arguments as DeepCubemap's. Raises DeviceError."""
+        """triangles: (n, 3, 3) vertices; structure: which this releases, None makes a deep cubemap of the other
+        arguments, which are DeepCubemap's. Raises DeviceError."""
         self.context, self.library = context, library
         self.host_triangles = np.asarray(triangles, np.float32)
         vertices = np.zeros((max(3 * len(triangles), 1), 4), np.float32)
         vertices[: 3 * len(triangles), :3] = self.host_triangles.reshape(-1, 3)
         self.triangles = context.moderngl.buffer(vertices.tobytes())
         self.center = np.asarray(center, np.float32)
-        self.cubemap = DeepCubemap(
+        self.structure = structure or DeepCubemap(
             context, library, rasterize, texel_buffers=texel_buffers, most_clustered=most_clustered
         )
         self._rays = LivingPaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)
 
     def build(self, resolution: int) -> None:
-        """Build the deep cubemap anew."""
+        """Build the acceleration structure anew."""
         distances = np.linalg.norm(self.host_triangles.reshape(-1, 3) - self.center, axis=1)
         radius = distances[np.isfinite(distances)].max(initial=0.0)
-        self.cubemap.build(self.triangles, len(self.host_triangles), self.center, radius, resolution)
+        self.structure.build(self.triangles, len(self.host_triangles), self.center, radius, resolution)
 
     def trace(self, rays: np.ndarray) -> np.ndarray:
         """HIT records of RAY records."""
-        return self._run(rays, HIT.dtype, self._of_all(self.cubemap.trace))
+        return self._run(rays, HIT.dtype, self._of_all(self.structure.trace))
 
     def occluded(self, rays: np.ndarray, targets: np.ndarray | None = None) -> np.ndarray:
         """uint32, 1 where a ray is free, else 0. targets: triangles that rays go to and that do not count, uint32."""
@@ -75,7 +78,7 @@ class TracedTriangles:
             return self._run(
                 rays,
                 np.dtype(np.uint32),
-                self._of_all(lambda queried, free, living: self.cubemap.occluded(queried, ends, free, living)),
+                self._of_all(lambda queried, free, living: self.structure.occluded(queried, ends, free, living)),
             )
         finally:
             ends.release()
@@ -115,7 +118,7 @@ class TracedTriangles:
 
     def release(self) -> None:
         """Free the device's memory."""
-        self.cubemap.release()
+        self.structure.release()
         self._rays.release()
         self.triangles.release()
 

@@ -1,7 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
 // How much of the disk in which diffused photons count lies on surfaces, where a gathering ray ends: short rays across
 // the disk, until one meets surface. Their number has the mean 1 / part (Booth, Unbiased Monte Carlo Estimation of the
 // Reciprocal of an Integral, 2007), which is what the photons there have to be multiplied by.
@@ -17,7 +18,7 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 #include "common/surface_tolerance.glsl"
 layout(std140, binding = 0) uniform Parameters { CoverageParameters parameters; };
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 
 layout(std430, binding = 1) buffer Importons;
 layout(std430, binding = 2) readonly buffer Closures;
@@ -76,7 +77,7 @@ float covered(Disk disk, vec3 point) {
     uint source = NO_TRIANGLE;
     // What lies behind the first layer below the importon's plane is shut off (is_shut_off).
     for (uint layer = 0u; layer < MOST_LAYERS && sum < FLAT && left >= height; ++layer) {
-        Hit hit = deep_cubemap_hit(Ray(at, source, -disk.normal, left));
+        Hit hit = nearest_hit(Ray(at, source, -disk.normal, left));
         if (hit.triangle == NO_TRIANGLE) break;
         source = hit.triangle;
         at -= hit.distance * disk.normal;

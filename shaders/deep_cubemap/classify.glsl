@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One cell of a job: the exact test, and the fragment it leaves behind.
-#include "deep_cubemap/triangles.glsl"
+#include "acceleration/triangles.glsl"
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"

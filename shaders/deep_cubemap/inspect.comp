@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint: DEEP_CUBEMAP_COUNT=1
+// lint: COUNT_TRAVERSAL=1
 // What the rays through the pixels cost: (steps, triangle tests, entries in the cell of the hit, entries read).
 layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
@@ -37,8 +37,8 @@ void main() {
     vec2 at = window_point(index), center = vec2(0.0);
     Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, center)
                         : panorama_ray(at, center));
-    Hit hit = deep_cubemap_hit(ray);
+    Hit hit = nearest_hit(ray);
     uint listed = hit.triangle == NO_TRIANGLE
         ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.center);
-    inspections[index] = vec4(walk_counts.xy, listed, walk_counts.z);
+    inspections[index] = vec4(walk_steps, triangle_tests, listed, entries_read);
 }

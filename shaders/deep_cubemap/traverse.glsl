@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tracing rays through the deep cubemap; for any kernel: deep_cubemap_hit(ray) and
-// deep_cubemap_occluded(ray). Takes the storage block bindings 8 to 13.
+// Tracing rays through the deep cubemap, for kernels that include TRAVERSAL. Takes the storage block bindings 8 to 13.
 //
 // Seen from the center a ray runs through up to six faces, and on each through a row of cells. The
 // borders of cells are planes through the center, so where the ray leaves a cell is a plain ray and
@@ -9,11 +8,9 @@
 //
 // Mesa's llvmpipe ends all loops of a thread after 65535 rounds in all. Steps and tests of a ray stay
 // far below that, unless tens of thousands of triangles crowd into a few cells or around the center.
-#include "common/constants.glsl"
+#include "acceleration/ray_test.glsl"
 #include "common/finite.glsl"
 #include "common/whole_numbers.glsl"
-#include "common/intersection.glsl"
-#include "deep_cubemap/triangles.glsl"
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/bins.glsl"
@@ -21,82 +18,21 @@
 #include "deep_cubemap/core.glsl"
 #include "deep_cubemap/clusters.glsl"
 #include "deep_cubemap/faces.glsl"
-#ifdef ONE_SIDED_TRIANGLES
-#include "common/light_sets.glsl"
-#endif
-
-#ifdef TRACES_INSTANCES
-// Rays may hit triangles of one instance only, or of all. The includer declares before the block Attributes.
-const uint ALL_INSTANCES = 0xffffffffu;
-uint traced_instance = ALL_INSTANCES;
-#endif
-
-#ifdef SHADOW_RAYS
-uint target_triangle = NO_TRIANGLE;  // that a shadow ray ends on, and is not hidden by
-#endif
 
 // What stays the same along a ray.
 struct CubemapWalk {
     DeepCubemapState cubemap;
-    WatertightRay test;
-    vec3 origin;          // from the center
-    vec3 direction;
-    uint source_triangle; // never hit
-    bool any_hit;         // the first hit found will do
+    RayTest test;
+    vec3 origin; // from the center
 };
 
-// Whether what casts no shadow is passed.
-bool is_shadow_ray(CubemapWalk walk) {
-#ifdef NEAREST_SHADOW
-    return true;
-#else
-    return walk.any_hit;
-#endif
-}
-
 bool is_done(CubemapWalk walk, Hit best, float distance) {
-    return best.distance <= distance || (walk.any_hit && best.triangle != NO_TRIANGLE);
+    return best.distance <= distance || (walk.test.any_hit && best.triangle != NO_TRIANGLE);
 }
 
-#ifdef DEEP_CUBEMAP_COUNT
-uvec3 walk_counts = uvec3(0u); // steps, triangle tests, entries
+#ifdef COUNT_TRAVERSAL
+uint walk_steps = 0u, entries_read = 0u;
 #endif
-
-void test_triangle(CubemapWalk walk, uint triangle, inout Hit best) {
-    if (triangle == walk.source_triangle) return;
-#ifdef SHADOW_RAYS
-    if (triangle == target_triangle) return;
-#endif
-    vec4 vertex0 = triangle_vertex(3u * triangle);
-#ifdef TRACES_INSTANCES
-    bool of_all = traced_instance == ALL_INSTANCES;
-#else
-    const bool of_all = true;
-#endif
-    if (of_all && is_shadow_ray(walk) && vertex0.w > 0.0) return;  // casts no shadow
-#ifdef ONE_SIDED_TRIANGLES
-    vec3 vertex1 = triangle_vertex(3u * triangle + 1u).xyz, vertex2 = triangle_vertex(3u * triangle + 2u).xyz;
-    bool from_within = dot(cross(vertex1 - vertex0.xyz, vertex2 - vertex0.xyz), walk.direction) > 0.0;
-    if (from_within && is_one_sided(vertex0.w)) return;
-#endif
-#ifdef SHADOW_LINKING
-    if (is_shadow_ray(walk) && !has_set(shadow_sets, shadow_set_of(vertex0.w))) return;
-#endif
-#ifdef DEEP_CUBEMAP_COUNT
-    ++walk_counts.y;
-#endif
-#ifdef TRACES_INSTANCES
-    Hit before = best;
-#endif
-    intersect_triangle(
-        walk.test, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
-        triangle_vertex(3u * triangle + 2u).xyz,
-        best);
-#ifdef TRACES_INSTANCES
-    // Asked last, as few triangles are hit.
-    if (!of_all && best.triangle == triangle && attributes[triangle].instance != traced_instance) best = before;
-#endif
-}
 
 // Tests what a cell holds between two depths; cells with depth bins in the ray's order.
 // `depth`: at the ray's origin, and its slope.
@@ -125,8 +61,8 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
             if (next < behind) triangle = next++;
 #endif
             for (; place < end && triangle == NO_TRIANGLE; ++place) {
-#ifdef DEEP_CUBEMAP_COUNT
-                ++walk_counts.z;
+#ifdef COUNT_TRAVERSAL
+                ++entries_read;
 #endif
                 uvec2 entry = cell_entry(place);
                 if ((entry.y >> 16) >= wanted.x && (entry.y & 0xffffu) <= wanted.y && (entry.x & seen) == 0u) {
@@ -138,11 +74,11 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
                 }
             }
             if (triangle == NO_TRIANGLE) break;
-            test_triangle(walk, triangle, best);
+            test_triangle(walk.test, triangle, best);
         }
         if (remaining <= 0) return;
         if (best.triangle != NO_TRIANGLE) {
-            if (walk.any_hit) return;
+            if (walk.test.any_hit) return;
             // a hit ends the ray before the bins that lie behind it
             float hit_depth = depth.x + best.distance * depth.y;
             ivec2 hit_bins = bins_between(
@@ -240,7 +176,7 @@ uint start_tile(int face, ivec2 cell, int finest, int root_exponent) {
 // `level` says how much around it is looked at together: a cell that is divided, or that holds nothing
 // at the ray's depths, is left at once.
 void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit best) {
-    vec3 origin = to_face(walk.origin, face), direction = to_face(walk.direction, face);
+    vec3 origin = to_face(walk.origin, face), direction = to_face(walk.test.direction, face);
     int root_exponent = int(walk.cubemap.root_exponent);
     int finest = root_exponent + 2 * int(walk.cubemap.last_level);
     float resolution = float(1 << finest);
@@ -254,8 +190,8 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
     uint tile = start_tile(face, cell, finest, root_exponent);
     // Never reached: a walk crosses 2 * resolution cells at most and changes level for few of them.
     for (int count = 0; count < 60000; ++count) {
-#ifdef DEEP_CUBEMAP_COUNT
-        ++walk_counts.x;
+#ifdef COUNT_TRAVERSAL
+        ++walk_steps;
 #endif
         int shift = finest - root_exponent - 2 * level;
         ivec2 block = cell >> shift;
@@ -359,7 +295,7 @@ int take_next_face(inout FaceParts parts, out vec2 part) {
 
 // Walks the faces between two distances, nearest first.
 void walk_faces(CubemapWalk walk, float from, float to, inout Hit best) {
-    FaceParts parts = clip_to_faces(walk.origin, walk.direction, from, to);
+    FaceParts parts = clip_to_faces(walk.origin, walk.test.direction, from, to);
     for (int visit = 0; visit < 6; ++visit) {
         vec2 part;
         int face = take_next_face(parts, part);
@@ -380,14 +316,14 @@ bool clip_to_ball(float closest, float squared_miss, float squared_length, float
 void clip_to_box(CubemapWalk walk, inout float from, inout float to) {
     vec3 low = from_sortable_bits(~walk.cubemap.low_complement) - walk.cubemap.margin;
     vec3 high = from_sortable_bits(walk.cubemap.high) + walk.cubemap.margin;
-    bvec3 moves = greaterThan(abs(walk.direction), vec3(1e-20));
-    vec3 a = (low - walk.origin) / walk.direction, b = (high - walk.origin) / walk.direction;
+    bvec3 moves = greaterThan(abs(walk.test.direction), vec3(1e-20));
+    vec3 a = (low - walk.origin) / walk.test.direction, b = (high - walk.origin) / walk.test.direction;
     vec3 enter = mix(vec3(from), min(a, b), moves), leave = mix(vec3(to), max(a, b), moves);
     from = max(from, max(enter.x, max(enter.y, enter.z)));
     to = min(to, min(leave.x, min(leave.y, leave.z)));
 }
 
-Hit trace_deep_cubemap(Ray ray, bool any_hit) {
+Hit trace_ray(Ray ray, bool any_hit) {
     Hit best = Hit(NO_TRIANGLE, 0.0, 0.0, min(ray.maximum_distance, INFINITY_DISTANCE));
     DeepCubemapState cubemap = deep_cubemap;
     vec3 origin = ray.origin - cubemap.center;
@@ -395,8 +331,7 @@ Hit trace_deep_cubemap(Ray ray, bool any_hit) {
     if (!(ray.maximum_distance > 0.0) || !is_finite(origin) || !is_finite(ray.direction) || squared_length == 0.0) {
         return best;
     }
-    CubemapWalk walk = CubemapWalk(
-        cubemap, make_watertight_ray(ray.origin, ray.direction), origin, ray.direction, ray.source_triangle, any_hit);
+    CubemapWalk walk = CubemapWalk(cubemap, make_ray_test(ray, any_hit), origin);
     float closest = -dot(origin, ray.direction) / squared_length;
     vec3 foot = origin + closest * ray.direction;
     float squared_miss = dot(foot, foot);
@@ -416,7 +351,7 @@ Hit trace_deep_cubemap(Ray ray, bool any_hit) {
         if (from < end) walk_faces(walk, from, end, best);
         if (part == 1 || !meets_core || is_done(walk, best, core.x)) break;
         for (uint index = 0u; index < cubemap.core_count; ++index) {
-            test_triangle(walk, core_triangles[index], best);
+            test_triangle(walk.test, core_triangles[index], best);
         }
         from = max(from, core.y);
         if (is_done(walk, best, from)) break;
@@ -425,11 +360,11 @@ Hit trace_deep_cubemap(Ray ray, bool any_hit) {
 }
 
 // The nearest hit within ray.maximum_distance (which may be it); best.triangle NO_TRIANGLE if none.
-Hit deep_cubemap_hit(Ray ray) {
-    return trace_deep_cubemap(ray, false);
+Hit nearest_hit(Ray ray) {
+    return trace_ray(ray, false);
 }
 
 // Whether anything lies within ray.maximum_distance.
-bool deep_cubemap_occluded(Ray ray) {
-    return trace_deep_cubemap(ray, true).triangle != NO_TRIANGLE;
+bool is_occluded(Ray ray) {
+    return trace_ray(ray, true).triangle != NO_TRIANGLE;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What kernels that list jobs do with a triangle.
 #include "common/finite.glsl"
-#include "deep_cubemap/triangles.glsl"
+#include "acceleration/triangles.glsl"
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/core.glsl"
 #include "deep_cubemap/cells.glsl"

@@ -12,7 +12,7 @@ layout(std140, binding = 0) uniform Parameters { FirstHitsParameters parameters;
 #define TEXELS_ACCESS readonly
 #include "light_gbuffer/views.glsl"
 #include "living_paths/kept.glsl"
-#include "deep_cubemap/triangles.glsl"
+#include "acceleration/triangles.glsl"
 layout(std430, binding = 3) readonly buffer Rays;
 layout(std430, binding = 5) writeonly buffer Hits;
 layout(std430, binding = 2) readonly buffer TexelTriangles;

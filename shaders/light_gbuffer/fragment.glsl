@@ -6,7 +6,7 @@ layout(std140, binding = 0) uniform Parameters { LightGBufferParameters paramete
 #define TEXELS_ACCESS
 #include "light_gbuffer/views.glsl"
 #include "light_gbuffer/jobs.glsl"
-#include "deep_cubemap/triangles.glsl"
+#include "acceleration/triangles.glsl"
 #include "deep_cubemap/cone_overlap.glsl"
 
 flat in uint job_number;

@@ -10,7 +10,7 @@ layout(std140, binding = 0) uniform Parameters { LightGBufferParameters paramete
 #define TEXELS_ACCESS readonly
 #include "light_gbuffer/views.glsl"
 #include "light_gbuffer/jobs.glsl"
-#include "deep_cubemap/triangles.glsl"
+#include "acceleration/triangles.glsl"
 #include "deep_cubemap/cone_bounds.glsl"
 
 void main() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which media a point is in, by the surfaces on the way to it or away from it. The includer declares before the block
 // Attributes, Materials and MediumBoxes.
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 #include "common/geometry.glsl"
 #include "materials/medium.glsl"
 
@@ -15,7 +15,7 @@ struct Crossing { uint medium; bool leaves; };
 
 Crossing next_crossing(inout Ray ray) {
     for (int count = 0; count < MOST_CROSSINGS; ++count) {
-        Hit hit = deep_cubemap_hit(ray);
+        Hit hit = nearest_hit(ray);
         if (hit.triangle == NO_TRIANGLE) break;
         vec3 v0 = triangle_vertex(3u * hit.triangle).xyz, v1 = triangle_vertex(3u * hit.triangle + 1u).xyz,
              v2 = triangle_vertex(3u * hit.triangle + 2u).xyz;

@@ -1,7 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
 // The media that photons begin in: those at the middle of their light, and what lies on the way from there to where
 // each leaves it. Emissive meshes have no middle; around suns and the world there is nothing.
 

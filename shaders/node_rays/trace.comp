@@ -1,8 +1,10 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
-// lint: RAYCASTS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl RAYCASTS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=bvh/traverse.glsl RAYCASTS=1
 // What the nodes of a program's materials ask of rays, some samples of each at a time.
 
 layout(local_size_x = 64) in;
@@ -21,7 +23,7 @@ layout(std430, binding = 3) readonly buffer Attributes;
 layout(std430, binding = 4) readonly buffer HitOrder;
 
 #define TRACES_INSTANCES
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 #include <NodeQuestions>
 #include <Ranges>
 
@@ -167,7 +169,7 @@ void main() {
 #endif
             int most_hits = bevel ? MOST_BEVEL_HITS : 1;
             for (int hit_number = 0; hit_number < most_hits; ++hit_number) {
-                Hit hit = trace_deep_cubemap(ray, any_hit);
+                Hit hit = trace_ray(ray, any_hit);
 #ifdef RAYCASTS
                 if (is_raycast(kind)) {
                     found = keep_cast(at + 1u, hit, ray.direction, instance);

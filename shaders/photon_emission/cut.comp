@@ -1,7 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
 // Soft lights with surfaces near them face the point where a photon hits with a disk that the photon's ray meets a
 // little behind where it began: what lies in between hides that place, as it does from shadow rays.
 
@@ -12,7 +13,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { CutParameters parameters; };
 #include "lights/light_table.glsl"
 #include <Lights>
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 layout(std430, binding = 0) buffer Rays;
 layout(std430, binding = 1) readonly buffer Hits;
 layout(std430, binding = 2) buffer PhotonPaths;
@@ -28,7 +29,7 @@ void main() {
     if (!is_cut || hit.triangle == NO_TRIANGLE || !(ray.maximum_distance > 0.0)) return;
     vec3 point = ray.origin + hit.distance * ray.direction;
     float behind = soft_light_distance(light, point, -ray.direction) - hit.distance;
-    if (!deep_cubemap_occluded(Ray(ray.origin, NO_TRIANGLE, -ray.direction, behind))) return;
+    if (!is_occluded(Ray(ray.origin, NO_TRIANGLE, -ray.direction, behind))) return;
     photon_paths[index].flux = vec3(0.0);
     rays[index].maximum_distance = 0.0;
 }

@@ -1,7 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
 // Some steps of random walks below surfaces, as Cycles takes them: directions and distances are guided to the surface
 // where the walk went in, or to an opposite one that is near.
 // Krivanek and d'Eon, A Zero-Variance-Based Sampling Scheme for Monte Carlo Subsurface Scattering (2014).
@@ -18,7 +19,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { WalkParameters parameters; };
 layout(std430, binding = 1) readonly buffer Attributes;
 #define TRACES_INSTANCES
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 
 layout(std430, binding = 2) writeonly buffer ExitHits;
 layout(std430, binding = 4) buffer SubsurfaceWalks;
@@ -114,7 +115,7 @@ bool step_on(uint step, inout SubsurfaceWalk walk, inout Ray ray, inout RandomSe
     ray.maximum_distance = distance;
     vec3 most = medium.extinction;
     if (step == 0u) ray.maximum_distance = max(distance, 10.0 / min(most.x, min(most.y, most.z)));
-    hit = deep_cubemap_hit(ray);
+    hit = nearest_hit(ray);
     bool leaves = hit.triangle != NO_TRIANGLE;
     if (step == 0u && leaves) {
         walk.opposite = max(-hit.distance * dot(ray.direction, unpack_unit_vector(walk.normal)), 0.0);

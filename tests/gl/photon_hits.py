@@ -23,7 +23,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     PhotonEmission(library).emit(
         lights, rays, paths.buffer, directions.buffer, differentials.buffer, count, Iteration(2, seed=3)
     )
-    context.deep_cubemap.trace(rays, hits.buffer, photons._living)
+    context.acceleration.trace(rays, hits.buffer, photons._living)
     traced = hits.read(HIT.dtype, count).copy()
     hits.clear()
     gbuffer = LightGBuffer(mapper.context, library)
@@ -32,7 +32,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry)
     gbuffer.find(lights.buffers["Lights"], context.geometry, rays, hits.buffer, count, left)
     settled = 1.0 - left.read_count() / count
-    context.deep_cubemap.trace(rays, hits.buffer, left)
+    context.acceleration.trace(rays, hits.buffer, left)
     rasterized = hits.read(HIT.dtype, count).copy()
     gbuffer.release()
     left.release()

@@ -4,6 +4,7 @@
 import bpy
 
 from ...scene.quantities import bytes_text, count_text, noise_text, rate_text, seconds_text
+from ...scene.settings import AccelerationStructure
 from ..export.settings import export_settings
 from ..readings import memory_reading
 from ..renderer_process import failure
@@ -59,13 +60,16 @@ class RPPM_PT_diagnostics(RppmPanel, bpy.types.Panel):
         """All is in the panels inside."""
 
 
-class RPPM_PT_deep_cubemap(RppmPanel, bpy.types.Panel):
-    bl_label = "Deep Cubemap"
+class RPPM_PT_acceleration_structure(RppmPanel, bpy.types.Panel):
+    bl_label = "Acceleration Structure"
     bl_parent_id = "RPPM_PT_diagnostics"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
+        column.prop(context.scene.rppm, "acceleration_structure", text="Structure")
+        column = column.column()
+        column.active = context.scene.rppm.acceleration_structure != AccelerationStructure.BVH.name
         draw_setting(column, context.scene, "cubemap_resolution", "Resolution")
         column.prop(context.scene.rppm, "cubemap_center_object", text="Center")
 
@@ -155,6 +159,6 @@ CLASSES = (
     RPPM_PT_performance_final,
     RPPM_PT_performance_viewport,
     RPPM_PT_diagnostics,
-    RPPM_PT_deep_cubemap,
+    RPPM_PT_acceleration_structure,
     RPPM_PT_last_renders,
 )

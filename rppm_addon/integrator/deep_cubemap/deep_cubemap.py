@@ -28,7 +28,7 @@ from collections.abc import Iterable, Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import TEXEL_SIZE, Context
 from ...gl.programs import ProgramLibrary
@@ -36,9 +36,8 @@ from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
 from ...scene.errors import DeviceError, DeviceLostError
-from ..common import records  # noqa: F401  the kernels include Ray and Hit
+from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
 from ..common.known import known
-from ..common.living_paths import LivingPaths
 
 log = logging.getLogger(__name__)
 
@@ -127,9 +126,6 @@ Record("MergeLevel", first_cell="uint", end_cell="uint", tile_cells="uint")
 
 FINEST_RESOLUTION = 1 << 14
 
-# Of the scene's radius. The margin is thirty times the rounding error of float positions, so that a
-# point that a ray reaches is found in the cells of its triangle.
-_MARGIN = 2.0**-20
 # Nearer to the center than this many margins, rays test a list.
 _CORE_MARGINS = 64.0
 _BASE_LEVEL = 2
@@ -164,7 +160,7 @@ class _TooLong(Exception):
         self.level, self.cause = level, cause
 
 
-class DeepCubemap(BufferSet):
+class DeepCubemap(AccelerationStructure):
     """A deep cubemap on the GPU. Buffers are kept between builds and grow with need.
 
     ``resolution`` (cells along a face's side where they are finest), ``center`` (three floats, meters)
@@ -179,6 +175,7 @@ class DeepCubemap(BufferSet):
     to the kind of driver. What is too long for that is read from storage blocks.
     """
 
+    shader = "deep_cubemap/traverse.glsl"
     remedy = "lower the cubemap resolution or simplify the geometry"
     _state = StorageBuffer("deep cubemap state", STATE)
     _cells = StorageBuffer("deep cubemap cells", CELL)
@@ -203,10 +200,8 @@ class DeepCubemap(BufferSet):
         most_clustered: int | None = None,
     ) -> None:
         super().__init__(context, library)
-        self._context = context
         self._rasterize = rasterize
         self._wanted_clusters, self._most_clustered = most_clustered, 1
-        self._library = library
         self._least_gain, self._most_bins = least_gain, most_bins
         self._texel_buffers = context.is_software if texel_buffers is None else texel_buffers
         self._most_texel_bytes = TEXEL_SIZE * context.most_texels
@@ -223,8 +218,6 @@ class DeepCubemap(BufferSet):
         self._old_fragments = self._fragments_above
         """Changes places with the list of fragments, level by level."""
         self._framebuffer: moderngl.Framebuffer | None = None
-        self._triangles: moderngl.Buffer | None = None
-        self._has_one_sided = False
         self._too_many, self._last_level = 1 << 32, 0
         self._fragments_found = 0
         self.resolution = 0
@@ -240,15 +233,10 @@ class DeepCubemap(BufferSet):
         resolution: int = 0,
         has_one_sided: bool = False,
     ) -> None:
-        """Sort triangles into the cubemap.
+        """AccelerationStructure.build.
 
-        ``triangles`` holds three vec4 a triangle and must stay as it is while rays are traced.
-        ``scene_radius``: the greatest distance from ``center`` of any vertex (meters); nothing farther
-        out is hit. Rays may start anywhere, yet lose precision from some ten radii on.
         ``resolution``: the most cells along a face's side, a power of two from 4 to FINEST_RESOLUTION, which 0 stands
-        for too. ``has_one_sided``: whether any triangle is met by rays from outside only. Triangles with infinite or
-        NaN coordinates are left out.
-        Raises ValueError for other resolutions, and DeviceError where the device's limits are too low.
+        for too.
         """
         resolution = resolution or FINEST_RESOLUTION
         if not 4 <= resolution <= FINEST_RESOLUTION or resolution & (resolution - 1):
@@ -260,8 +248,8 @@ class DeepCubemap(BufferSet):
         scene_radius = max(float(scene_radius), 1e-20)
         state = STATE.zeros(1)[0]
         state["center"] = self.center
-        state["margin"] = scene_radius * _MARGIN
-        state["core_radius"] = scene_radius * _MARGIN * _CORE_MARGINS
+        state["margin"] = scene_radius * MARGIN
+        state["core_radius"] = scene_radius * MARGIN * _CORE_MARGINS
         state["scene_radius"] = scene_radius
         state["root_exponent"] = exponent % 2
         state["root_count"] = 6 << (2 * state["root_exponent"])
@@ -283,46 +271,9 @@ class DeepCubemap(BufferSet):
         }
         log.debug("deep cubemap: %s", self.counts)
 
-    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
-        """Find the nearest hits of the living paths' Ray records; writes Hit records.
-
-        A hit at just maximum_distance counts, one at distance 0 does not. Where nothing is hit,
-        triangle is NO_TRIANGLE and the rest without meaning.
-        """
-        self._trace("deep_cubemap/trace.comp", {"Rays": rays, "Hits": hits}, living)
-
-    def occluded(
-        self,
-        rays: moderngl.Buffer,
-        targets: moderngl.Buffer,
-        visibility: moderngl.Buffer,
-        living: LivingPaths,
-        linking: Mapping[str, moderngl.Buffer] | None = None,
-    ) -> None:
-        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0.
-
-        targets: of each, the triangle that the ray goes to, which does not count, or NO_TRIANGLE; uint.
-        linking: the buffers Contributions and LightLinks, where these say what may be in a ray's way.
-        """
-        kernel = "deep_cubemap/occluded_linked.comp" if linking else "deep_cubemap/occluded.comp"
-        buffers = {"Rays": rays, "LightTriangles": targets, "Visibility": visibility, **(linking or {})}
-        self._trace(kernel, buffers, living)
-
-    def shadow_hits(
-        self,
-        rays: moderngl.Buffer,
-        targets: moderngl.Buffer,
-        hits: moderngl.Buffer,
-        living: LivingPaths,
-        linking: Mapping[str, moderngl.Buffer] | None = None,
-    ) -> None:
-        """Find the nearest hits of shadow rays as trace does, of what counts for occluded."""
-        kernel = "deep_cubemap/shadow_hits_linked.comp" if linking else "deep_cubemap/shadow_hits.comp"
-        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, living)
-
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
-        """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""
+        """AccelerationStructure.traversal_buffers."""
         return {
             "Triangles": known(self._triangles),
             "DeepCubemap": self._state.buffer,
@@ -333,13 +284,12 @@ class DeepCubemap(BufferSet):
         }
 
     @property
-    def traversal_defines(self) -> Mapping[str, object]:
-        """And their defines."""
+    def traversal_defines(self) -> dict[str, object]:
+        """AccelerationStructure.traversal_defines."""
         fits = all(self.traversal_buffers[name].size <= self._most_texel_bytes for name in _READ_AS_TEXELS)
         is_asked_for = self._texel_buffers or self._entries.size > self._context.storage_block_limit
-        defines: dict[str, object] = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
-        defines |= self._cluster_defines
-        return defines | {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else defines
+        texel_buffers: dict[str, object] = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
+        return {**super().traversal_defines, **texel_buffers, **self._cluster_defines}
 
     @property
     def _cluster_defines(self) -> dict[str, object]:
@@ -350,10 +300,6 @@ class DeepCubemap(BufferSet):
     def route(self) -> str | None:
         """How triangles are found in cells; None where that has not been decided yet (a compute shader serves)."""
         return {True: "rasterization", False: "compute shader", None: None}[self._rasterize]
-
-    def _trace(self, kernel: str, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> None:
-        program = self._library.compute(kernel, self.traversal_defines)
-        living.run(program, {**self.traversal_buffers, **buffers})
 
     def _read_state(self) -> np.void:
         return self._state.read(STATE.dtype, 1)[0].copy()

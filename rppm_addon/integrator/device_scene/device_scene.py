@@ -14,26 +14,25 @@ from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh
 from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
+from ...scene.settings import AccelerationStructure
 from ..common.iteration import Iteration
 from ..common.known import known
-from ..deep_cubemap.deep_cubemap import DeepCubemap
-from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..lights.lights import Lights
 from ..surfaces.bodies import warn_of_open_bodies
 from ..surfaces.displacement import Displacement
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
+from .acceleration import Acceleration
 from .centering import Centering
 from .changes import Changes, changes_between, snapshot
 from .shutter import moment, swept_bounds
 from .stage_context import StageContext
 
-_MOST_CORE_TRIANGLES = 64
 _NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 class DeviceScene:
-    """What of a scene lies on the device: geometry, materials, lights and the deep cubemap."""
+    """What of a scene lies on the device: geometry, materials, lights and the acceleration structure."""
 
     def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
         self._timers = timers
@@ -42,14 +41,11 @@ class DeviceScene:
         self.materials = MaterialTables(context, library)
         self.displacement = Displacement(context, library)
         self.lights = Lights(context, library)
-        # Where no unit rasterizes that takes two to three times as long, and trying it most of the first build.
-        self.deep_cubemap = DeepCubemap(context, library, rasterize=False if context.is_software else None)
+        self.acceleration = Acceleration(context, library)
         self.resolve = Resolve(context, library)
         self.centering = Centering()
         self.scene: Scene | None = None
         """Centered and displaced; with a shutter, as it is at the iteration's moment."""
-        self.center = np.full(3, np.nan)
-        """Of the deep cubemap, (3,) meters."""
         self._source_scene: Scene | None = None
         """The scene, its shutter included."""
         self._uploaded_scene: Scene | None = None
@@ -59,7 +55,6 @@ class DeviceScene:
         self._moving: MovingScene | None = None
         self._swept = _NOWHERE
         """What things move through while the shutter is open (swept_bounds)."""
-        self._wanted_center = np.full(3, np.nan)
         self._checked_bodies: dict[int, tuple[Mesh, bool]] = {}
 
     @property
@@ -75,8 +70,8 @@ class DeviceScene:
             self.geometry,
             self.materials,
             self.lights,
-            self.deep_cubemap,
-            self.center,
+            self.acceleration.structure,
+            self.acceleration.center,
             self.resolve,
             self._timers,
         )
@@ -111,24 +106,21 @@ class DeviceScene:
         changes.geometry |= not np.array_equal(swept, self._swept)
         self._swept = swept
         self._build_parts(changes, scene.photon_count)
-        wanted = next(cubemap_centers(scene, self.geometry))
-        is_near = np.linalg.norm(wanted - self._wanted_center) <= center_tolerance * self.geometry.radius
-        if changes.geometry or changes.cubemap or not is_near:
-            self._build_deep_cubemap()
-        self.resolve.trace_through(self.deep_cubemap)
+        self._build_acceleration(changes, center_tolerance)
         for text in itertools.chain(*self._warnings.values()):
             scene.warn(text)
         self._uploaded_scene = snapshot(scene)
 
     def upload_geometry(self, scene: Scene) -> None:
-        """Take a scene and build what rays need, to be looked at: nothing can be rendered. Raises as update does."""
+        """Take a scene and build the deep cubemap that rays need, to be looked at: nothing can be rendered. Raises as
+        update does."""
         scene = self.centering.centered(scene)
         self._take(scene)
         self.materials.build(scene)
         scene = self.displacement.displaced(scene, self.materials, True)
         self._take(scene)
         self.geometry.build(scene, self.materials.default_material)
-        self._build_deep_cubemap()
+        self.acceleration.build(scene, self.geometry, AccelerationStructure.DEEP_CUBEMAP)
 
     def move_to(self, iteration: Iteration) -> None:
         """Take the scene as it is at the iteration's moment, and build anew what rests on what has moved.
@@ -142,9 +134,7 @@ class DeviceScene:
         with self._timers.stage("motion"):
             self._build_materials(changes)
             self._build_parts(changes, iteration.photon_count, keep_learned=True)
-        if changes.geometry:
-            self._build_deep_cubemap()
-        self.resolve.trace_through(self.deep_cubemap)
+        self._build_acceleration(changes, center_tolerance=np.inf)
         self._uploaded_scene = snapshot(self.scene)
 
     def _take(self, scene: Scene) -> None:
@@ -159,7 +149,8 @@ class DeviceScene:
                 self.materials.build(scene)
 
     def _build_parts(self, changes: Changes, photons: int, keep_learned: bool = False) -> None:
-        """What rests on the scene's members that have changed, but for materials, displacement and the deep cubemap.
+        """What rests on the scene's members that have changed, but for materials, displacement and the acceleration
+        structure.
 
         photons: of the iteration. keep_learned: go on with what was learned of the lights.
         """
@@ -208,34 +199,21 @@ class DeviceScene:
         finally:
             scene.warnings = before
 
-    def _build_deep_cubemap(self) -> None:
-        """Where few triangles touch the center: those are tested by every ray that passes it."""
-        centers = list(cubemap_centers(known(self._source_scene), self.geometry))
-        self._wanted_center = centers[0]
-        with self._timers.stage("deep cubemap"):
-            for center in centers:
-                self.center = center
-                self.deep_cubemap.build(
-                    self.geometry.triangles.buffer,
-                    self.geometry.triangle_count,
-                    center,
-                    radius_about(center, self.geometry),
-                    known(self.scene).settings.cubemap_resolution,
-                    self.geometry.has_round_shapes,
-                )
-                if self.deep_cubemap.counts["core"] <= _MOST_CORE_TRIANGLES:
-                    return
+    def _build_acceleration(self, changes: Changes, center_tolerance: float) -> None:
+        with self._timers.stage("acceleration structure"):
+            self.acceleration.update(known(self._source_scene), self.geometry, changes, center_tolerance)
+        self.resolve.trace_through(self.acceleration.structure)
 
     @property
     def memory_bytes(self) -> dict[str, dict[str, int]]:
         """Bytes on the device by group and buffer."""
         return {
             "scene": self.geometry.memory_bytes | self.materials.memory_bytes | self.lights.memory_bytes,
-            "deep cubemap": self.deep_cubemap.memory_bytes,
+            "acceleration structure": self.acceleration.memory_bytes,
             "resolve": self.resolve.memory_bytes,
         }
 
     def release(self) -> None:
         """Give all buffers back."""
-        for part in (self.geometry, self.materials, self.lights, self.deep_cubemap, self.resolve):
+        for part in (self.geometry, self.materials, self.lights, self.acceleration, self.resolve):
             part.release()

@@ -9,7 +9,7 @@ from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.scene import Scene
 from ...scene.settings import RenderSettings
-from ..deep_cubemap.deep_cubemap import DeepCubemap
+from ..acceleration.acceleration_structure import AccelerationStructure
 from ..lights.lights import Lights
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
@@ -23,9 +23,10 @@ class StageContext:
     geometry: Geometry
     materials: MaterialTables
     lights: Lights
-    deep_cubemap: DeepCubemap
+    acceleration: AccelerationStructure
+    """What rays are traced through."""
     center: np.ndarray
-    """Of the deep cubemap, (3,) meters."""
+    """Of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
     resolve: Resolve
     timers: StageTimers
 

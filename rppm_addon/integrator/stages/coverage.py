@@ -31,12 +31,12 @@ class Coverage:
         if not context.gathers or segment == 0:
             return
         with context.timers.stage("coverage"):
-            cubemap = context.deep_cubemap
-            program = self._library.compute("coverage/probe.comp", cubemap.traversal_defines)
+            acceleration = context.acceleration
+            program = self._library.compute("coverage/probe.comp", acceleration.traversal_defines)
             importons.living.run(
                 program,
                 {
-                    **cubemap.traversal_buffers,
+                    **acceleration.traversal_buffers,
                     "Importons": importons.importons.buffer,
                     "Closures": importons.lit_blocks["Closures"],
                 },

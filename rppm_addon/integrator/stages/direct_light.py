@@ -111,7 +111,7 @@ class DirectLight(BufferSet):
                 if context.materials.any_passes_shadow_rays:
                     self._pass_surfaces(context, importons, linking, iteration, segment)
                 else:
-                    context.deep_cubemap.occluded(
+                    context.acceleration.occluded(
                         self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
                     )
                 living.run(
@@ -142,7 +142,7 @@ class DirectLight(BufferSet):
         for surfaces in range(most + 1):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return
-            context.deep_cubemap.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
+            context.acceleration.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
             met = {
                 "Hits": hits.buffer,
                 "Attributes": context.geometry.attributes.buffer,

@@ -125,9 +125,9 @@ class FirstHits(BufferSet):
         living: LivingPaths,
     ) -> None:
         if route is FirstPhotonHits.TRACED:
-            context.deep_cubemap.trace(rays, hits, living)
+            context.acceleration.trace(rays, hits, living)
             return
         lights = context.lights.buffers["Lights"]
         known(self._gbuffer).find(lights, context.geometry, rays, hits, living.most, self._left)
         if not self._left.known_empty:
-            context.deep_cubemap.trace(rays, hits, self._left)
+            context.acceleration.trace(rays, hits, self._left)

@@ -94,7 +94,7 @@ class Importons(BufferSet):
 
     def find_hits(self, context: StageContext) -> None:
         """What the rays of the living paths hit."""
-        context.deep_cubemap.trace(self.rays.buffer, self.hits.buffer, self.living)
+        context.acceleration.trace(self.rays.buffer, self.hits.buffer, self.living)
 
     def resolve(self, context: StageContext, iteration: Iteration, segment: int) -> None:
         """Hits to closures."""

@@ -77,21 +77,21 @@ class Media(BufferSet):
         self._boxes.upload(records)
         lights = len(context.lights.table)
         self._of_sources.require_items(lights + 1)
-        program = self._library.compute("media/find.comp", context.deep_cubemap.traversal_defines)
+        program = self._library.compute("media/find.comp", context.acceleration.traversal_defines)
         buffers = self._buffers(context) | {"Lights": context.lights.buffers["Lights"]}
         program.run(lights + 1, {name: buffers[name] for name in program.blocks}, self._parameters(context))
 
     def _enter(
         self, context: StageContext, living: LivingPaths, buffers: dict[str, moderngl.Buffer], kernel: str
     ) -> None:
-        program = self._library.compute(kernel, context.deep_cubemap.traversal_defines)
+        program = self._library.compute(kernel, context.acceleration.traversal_defines)
         buffers = self._buffers(context) | buffers
         parameters = {**self._parameters(context), "has_camera": not self._has_texels}
         living.run(program, {name: buffers[name] for name in program.blocks - {"LivingPaths"}}, parameters)
 
     def _buffers(self, context: StageContext) -> dict[str, moderngl.Buffer]:
         return {
-            **context.deep_cubemap.traversal_buffers,
+            **context.acceleration.traversal_buffers,
             "Attributes": context.geometry.attributes.buffer,
             "Materials": context.materials.buffers["Materials"],
             "MediaOfSources": self._of_sources.buffer,

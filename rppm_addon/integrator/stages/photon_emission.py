@@ -78,12 +78,12 @@ class PhotonEmission:
         living: LivingPaths,
     ) -> None:
         """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
-        cubemap, lights = context.deep_cubemap, context.lights
-        program = self._library.compute("photon_emission/cut.comp", cubemap.traversal_defines)
+        acceleration, lights = context.acceleration, context.lights
+        program = self._library.compute("photon_emission/cut.comp", acceleration.traversal_defines)
         living.run(
             program,
             {
-                **cubemap.traversal_buffers,
+                **acceleration.traversal_buffers,
                 "Lights": lights.buffers["Lights"],
                 "Rays": rays,
                 "Hits": hits,

@@ -143,7 +143,7 @@ class Photons(BufferSet):
             self._living.keep(self._rays.buffer)
             if not self._living.bound(segment):
                 return False
-            context.deep_cubemap.trace(self._rays.buffer, self._hits.buffer, self._living)
+            context.acceleration.trace(self._rays.buffer, self._hits.buffer, self._living)
             return True
 
     def resolve(

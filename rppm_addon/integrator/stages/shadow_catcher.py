@@ -56,6 +56,6 @@ class ShadowCatcher(BufferSet):
                 {**context.lights.parameters(iteration), "segment": segment, "first_pixel": band.first_pixel},
             )
             linking = context.lights.linking_blocks(self._links.buffer)
-            context.deep_cubemap.occluded(
+            context.acceleration.occluded(
                 self._rays.buffer, self._triangles.buffer, self.lit.buffer, importons.living, linking
             )

@@ -98,7 +98,7 @@ class Subsurface(BufferSet):
     ) -> None:
         buffers = {
             **blocks,
-            **context.deep_cubemap.traversal_buffers,
+            **context.acceleration.traversal_buffers,
             "Triangles": context.geometry.triangles.buffer,
             "Attributes": context.geometry.attributes.buffer,
             "SubsurfaceWalks": self._walks.buffer,
@@ -112,7 +112,7 @@ class Subsurface(BufferSet):
             "first_path": band.first_pixel if band else 0,
         }
         enter, leave = (self._programs[name] for name in programs)
-        walk = self._library.compute("subsurface/walk.comp", context.deep_cubemap.traversal_defines)
+        walk = self._library.compute("subsurface/walk.comp", context.acceleration.traversal_defines)
 
         def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:
             return {name: buffers[name] for name in program.blocks - {"LivingPaths"}}

@@ -9,7 +9,6 @@ level of nodes: those of the first level ask, what they ask is traced, those tha
 
 import enum
 from collections.abc import Mapping
-from typing import Protocol
 
 import moderngl
 
@@ -20,6 +19,7 @@ from ...gl.programs import ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...materials.compiler import MOST_NODE_RAYS, NodeRayCounts
+from ..acceleration.acceleration_structure import AccelerationStructure
 
 Record(
     "NodeRaysParameters",
@@ -69,18 +69,6 @@ _SAMPLES_AT_ONCE = 8
 """llvmpipe ends all loops of a thread after 65535 rounds in all."""
 
 
-class Traversal(Protocol):
-    """What rays run through."""
-
-    @property
-    def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
-        """Buffers by block name that kernels which include deep_cubemap/traverse.glsl need."""
-
-    @property
-    def traversal_defines(self) -> Mapping[str, object]:
-        """And their defines."""
-
-
 class NodeRays(BufferSet):
     """Questions and answers of the paths whose hits are resolved, ``places`` of them a path."""
 
@@ -97,7 +85,7 @@ class NodeRays(BufferSet):
             self._rays.clear()
         return self._rays.buffer
 
-    def program(self, traversal: Traversal, casts: bool) -> ComputeProgram:
+    def program(self, traversal: AccelerationStructure, casts: bool) -> ComputeProgram:
         """What traces; where there are cores to spare it is compiled between asking for it and its first run. casts:
         also rays that begin anywhere, of which the program without knows nothing."""
         defines = {**traversal.traversal_defines, **({"RAYCASTS": 1} if casts else {})}

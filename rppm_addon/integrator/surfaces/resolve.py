@@ -16,10 +16,11 @@ from ...gl.sources import CompileError
 from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.scene import Scene
+from ..acceleration.acceleration_structure import AccelerationStructure
 from ..common.living_paths import LivingPaths
 from ..common.records import CAMERA_PATH, CLOSURE, PHOTON_PATH
 from .geometry import Geometry
-from .node_rays import NodeRays, Traversal
+from .node_rays import NodeRays
 from .surface_attributes import SurfaceAttributes
 
 Record(
@@ -106,7 +107,7 @@ class Resolve(BufferSet):
         """What nodes ask of rays at a hit, at most."""
         self._casts_rays = False
         """Whether nodes ask for rays that begin anywhere."""
-        self._traversal: Traversal | None = None
+        self._traversal: AccelerationStructure | None = None
         self._buffers: dict[str, moderngl.Buffer] = {}
         self._parameters: dict[str, object] = {}
 
@@ -142,7 +143,7 @@ class Resolve(BufferSet):
             **materials.buffers,
         }
 
-    def trace_through(self, traversal: Traversal) -> None:
+    def trace_through(self, traversal: AccelerationStructure) -> None:
         """Take what rays of nodes run through; from a build until then such nodes find nothing."""
         self._traversal = traversal
         if self._ray_stride:

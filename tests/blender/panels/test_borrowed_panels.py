@@ -52,7 +52,7 @@ COUNTERPARTS = {
     "CYCLES_RENDER_PT_motion_blur": "RPPM_PT_motion_blur",
     "CYCLES_RENDER_PT_motion_blur_curve": "RPPM_PT_motion_blur_curve",
     "CYCLES_RENDER_PT_performance": "RPPM_PT_performance",
-    "CYCLES_RENDER_PT_performance_acceleration_structure": "RPPM_PT_deep_cubemap",
+    "CYCLES_RENDER_PT_performance_acceleration_structure": "RPPM_PT_acceleration_structure",
     "CYCLES_RENDER_PT_performance_memory": "RPPM_PT_performance",
     "CYCLES_RENDER_PT_sampling": "RPPM_PT_sampling",
     "CYCLES_RENDER_PT_sampling_advanced": "RPPM_PT_advanced",

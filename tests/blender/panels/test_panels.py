@@ -30,7 +30,7 @@ OF_SWITCH = {
     "preview_photons": "RPPM_PT_sampling_viewport",
     "radius_minimum": "RPPM_PT_radius",
     "radius_maximum": "RPPM_PT_radius",
-    "cubemap_resolution": "RPPM_PT_deep_cubemap",
+    "cubemap_resolution": "RPPM_PT_acceleration_structure",
 }
 """The panel that shows a setting with its switch."""
 PANELS = [cls for cls in panels.CLASSES if issubclass(cls, RppmPanel)]

@@ -10,7 +10,7 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
 
 from rppm_addon.blender import following, renderer_thread
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.session.observers import RenderObserver, observing
@@ -158,7 +158,7 @@ def test_only_what_changed_is_uploaded_and_built(moving, tmp_path, monkeypatch, 
         monkeypatch.setattr(kind, method, lambda *a, **k: (done.append(word), original(*a, **k))[1])
 
     watch(Geometry, "build", "geometry")
-    watch(DeepCubemap, "build", "structure")
+    watch(Acceleration, "build", "structure")
     watch(ProgressivePhotonMapper, "update", "frame")
     following.forget()
     animation(moving, tmp_path, persistent)

@@ -109,7 +109,7 @@ def test_indirect_splats_are_all_pairs(mapper, monkeypatch, resolution, center):
     for segments in (1, 2):  # the sums hold the direct splats, too
         mapper.build(diffuse_room(camera_path_length=segments))
         if center is not None:
-            mapper.device_scene.center = np.array(center)
+            mapper.device_scene.acceleration.center = np.array(center)
         seen = importons_of_segments(mapper, monkeypatch, count)
         mapper.iterate()
         gathered.append(mapper.stages.density_estimator.sums.read(count)[:, 0])

@@ -10,7 +10,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import Image, NodeGraph, Scene, World
+from rppm_addon.scene import AccelerationStructure, Image, NodeGraph, Scene, World
 
 
 def with_(scene: Scene, **members: object) -> Scene:
@@ -121,27 +121,33 @@ def test_changes_one_after_the_other(mapper, other_mapper):
     np.testing.assert_array_equal(mapper.film.read_radiance(), other_mapper.film.read_radiance())
 
 
+def through(structure: AccelerationStructure, scene: Scene) -> Scene:
+    settings = dataclasses.replace(scene.settings, acceleration_structure=structure)
+    return dataclasses.replace(scene, settings=settings)
+
+
 def test_the_center_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper):
-    scene = first_scene()
+    scene = through(AccelerationStructure.DEEP_CUBEMAP, first_scene())
     mapper.build(scene)
-    center = mapper.device_scene.center.copy()
+    center = mapper.device_scene.acceleration.center.copy()
     moved = moved_camera(scene)
     mapper.update(moved, center_tolerance=math.inf)
-    np.testing.assert_array_equal(mapper.device_scene.center, center)
+    np.testing.assert_array_equal(mapper.device_scene.acceleration.center, center)
     other_mapper.build(moved)
-    assert not np.array_equal(other_mapper.device_scene.center, center)
+    assert not np.array_equal(other_mapper.device_scene.acceleration.center, center)
     kept, built = pictures(mapper), pictures(other_mapper)
     # Splats and rays start from other cells: the same photons and hits all the same.
     for a, b in zip(kept, built, strict=True):
         np.testing.assert_array_equal(a, b)
 
 
-def test_only_what_changed_is_built(mapper, monkeypatch):
-    """Of an edit no more is redone than it needs: neither geometry nor deep cubemap for a view or a material."""
-    scene = first_scene()
+@pytest.mark.parametrize("structure", [AccelerationStructure.DEEP_CUBEMAP, AccelerationStructure.BVH])
+def test_only_what_changed_is_built(mapper, monkeypatch, structure):
+    """Of an edit no more is redone than it needs: no geometry and no structure of it for a view or a material."""
+    scene = through(structure, first_scene())
     mapper.build(scene)
     done: list[str] = []
-    for part in ("geometry", "materials", "lights", "deep_cubemap"):
+    for part in ("geometry", "materials", "lights", "acceleration"):
         stage = getattr(mapper.device_scene, part)
         whole = stage.build
         monkeypatch.setattr(stage, "build", lambda *a, whole=whole, part=part, **k: (done.append(part), whole(*a, **k)))
@@ -156,7 +162,7 @@ def test_only_what_changed_is_built(mapper, monkeypatch):
     assert built_by(moved_camera) == []
     assert built_by(other_material) == ["materials", "lights"]
     assert built_by(brighter_light) == ["lights"]
-    assert built_by(moved_object) == ["geometry", "lights", "deep_cubemap"]
+    assert built_by(moved_object) == ["geometry", "lights", "acceleration"]
     assert built_by(lambda scene: with_(scene)) == []
 
 

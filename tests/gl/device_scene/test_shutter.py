@@ -96,7 +96,7 @@ def test_radii_are_those_of_the_whole_time(mapper):
         ({}, []),
         ({"camera": True}, []),
         ({"lights": True}, ["lights"]),
-        ({"instances": True}, ["geometry", "lights", "deep_cubemap"]),
+        ({"instances": True}, ["geometry", "lights", "acceleration"]),
     ],
 )
 def test_only_what_moves_is_built(mapper, monkeypatch, members, parts):
@@ -104,7 +104,7 @@ def test_only_what_moves_is_built(mapper, monkeypatch, members, parts):
     kept = {name: getattr(moving.shutter, name) for name in members}
     mapper.update(open_for(moving, **kept))
     done: list[str] = []
-    for part in ("geometry", "materials", "lights", "deep_cubemap"):
+    for part in ("geometry", "materials", "lights", "acceleration"):
         built = getattr(mapper.device_scene, part)
         whole = built.build
         monkeypatch.setattr(built, "build", lambda *a, whole=whole, part=part, **k: (done.append(part), whole(*a, **k)))

@@ -12,6 +12,7 @@ from deep_cubemap_structure import read_structure
 from moving_scenes import everything_moves
 
 from rppm_addon.integrator.deep_cubemap import deep_cubemap
+from rppm_addon.scene import AccelerationStructure
 from rppm_addon.self_test.meshes import placed
 from rppm_addon.self_test.ray_queries import TracedTriangles
 
@@ -42,18 +43,18 @@ def meshes():
 def test_clusters_change_no_hit(context, library, meshes, rasterize, most_clustered):
     rays = np.concatenate([HardRays(meshes, PLAIN, seed=31).rays(kind, 1000) for kind in KINDS])
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize, most_clustered=1) as scene:
-        expected, free, fragments = scene.trace(rays), scene.occluded(rays), scene.cubemap.counts["fragment"]
+        expected, free, fragments = scene.trace(rays), scene.occluded(rays), scene.structure.counts["fragment"]
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize, most_clustered=most_clustered) as scene:
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
         np.testing.assert_array_equal(scene.occluded(rays), free)
-        assert scene.cubemap.counts["fragment"] < 0.75 * fragments
+        assert scene.structure.counts["fragment"] < 0.75 * fragments
 
 
 @pytest.mark.parametrize("most_clustered", [2, 8])
 def test_each_triangle_is_in_one_cluster(context, library, meshes, most_clustered):
     odd = meshes[:-3]  # the last cluster is not full
     with TracedTriangles(context, library, odd, PLAIN, 0, most_clustered=most_clustered) as scene:
-        firsts, sizes = clusters_of(scene.cubemap)
+        firsts, sizes = clusters_of(scene.structure)
     np.testing.assert_array_equal(triangles_of(firsts, sizes), np.arange(len(odd)))
     np.testing.assert_array_equal(firsts % sizes, 0)
     assert sizes.max() == most_clustered and sizes.mean() > 0.6 * most_clustered
@@ -64,7 +65,7 @@ def test_triangles_that_lie_apart_stay_alone(context, library, meshes):
     mixed = np.random.default_rng(32).permutation(meshes)
     rays = HardRays(mixed, PLAIN, seed=33).rays("uniform", 2000)
     with TracedTriangles(context, library, mixed, PLAIN, 0, most_clustered=8) as scene:
-        firsts, sizes = clusters_of(scene.cubemap)
+        firsts, sizes = clusters_of(scene.structure)
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
     assert sizes.mean() < 1.1
     np.testing.assert_array_equal(triangles_of(firsts, sizes), np.arange(len(mixed)))
@@ -92,7 +93,11 @@ def test_large_scenes_have_clusters(count, most):
 
 def test_pictures_are_the_same(mapper, other_mapper, monkeypatch):
     """Of instances, one of them shining, that move while the shutter is open; and where one has been moved."""
-    scene = everything_moves(scenes.crowded_room(16, photons=256, camera_path_length=3, photon_path_length=3), 1.0)
+    room = scenes.crowded_room(
+        16, photons=256, camera_path_length=3, photon_path_length=3,
+        acceleration_structure=AccelerationStructure.DEEP_CUBEMAP,
+    )  # fmt: skip
+    scene = everything_moves(room, 1.0)
     moved = dataclasses.replace(scene, instances=[*scene.instances])
     moved.instances[8] = dataclasses.replace(moved.instances[8], matrix=placed(-0.5, 0.4, 0.1, 0.3))
 

@@ -1,8 +1,9 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
-// Whether each ray is free (1) or meets something (0) that may be in the way of the light that it goes to.
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
+// The nearest hit of each shadow ray on what may be in the way of the light that it goes to.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/light_sets.glsl"
@@ -10,10 +11,11 @@ layout(local_size_x = 64) in;
 uvec2 shadow_sets;  // bits of those that are in the ray's way
 #define SHADOW_LINKING
 #define SHADOW_RAYS
-#include "deep_cubemap/traverse.glsl"
+#define NEAREST_SHADOW
+#include TRAVERSAL
 
 layout(std430, binding = 1) restrict readonly buffer Rays;
-layout(std430, binding = 2) restrict writeonly buffer Visibility;
+layout(std430, binding = 2) restrict writeonly buffer Hits;
 layout(std430, binding = 3) restrict readonly buffer Contributions;
 layout(std430, binding = 4) restrict readonly buffer LightLinks;
 layout(std430, binding = 5) restrict readonly buffer LightTriangles;
@@ -24,6 +26,5 @@ void main() {
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
     shadow_sets = light_links[code_number(contributions[index].w)].shadow_sets;
-    if (shadow_sets == uvec2(0u)) visibility[index] = 1u;
-    else visibility[index] = deep_cubemap_occluded(ray) ? 0u : 1u;
+    hits[index] = nearest_hit(ray);
 }

@@ -135,7 +135,7 @@ def test_the_resolution_does_not_matter(context, library, meshes):
         expected = scene.trace(rays)
         for resolution in (4, 8, 32, 64, 128, 512):
             scene.build(resolution)
-            assert scene.cubemap.resolution == resolution
+            assert scene.structure.resolution == resolution
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
 
 
@@ -153,7 +153,7 @@ def test_buffers_too_long_for_texels_are_read_as_storage(context, library, meshe
     rays = ray_records(*make_rays("uniform", 2_000, PLAIN, seed=8))
     with TracedTriangles(context, library, meshes, PLAIN, 256, texel_buffers=True) as scene:
         expected = scene.trace(rays)
-        monkeypatch.setattr(scene.cubemap, "_most_texel_bytes", 1024)
+        monkeypatch.setattr(scene.structure, "_most_texel_bytes", 1024)
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
 
 
@@ -212,7 +212,7 @@ def test_an_empty_scene_after_a_full_one(context, library, meshes):
     """Nothing of the last build is left."""
     rays = ray_records(*make_rays("uniform", 1000, PLAIN, seed=13))
     with TracedTriangles(context, library, meshes, PLAIN) as scene:
-        scene.cubemap.build(scene.triangles, 0, PLAIN, 2.0, 64)
+        scene.structure.build(scene.triangles, 0, PLAIN, 2.0, 64)
         assert np.all(scene.trace(rays)["triangle"] == NO_TRIANGLE)
 
 
@@ -239,10 +239,10 @@ def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
     center = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
     rays = ray_records(*make_rays("past the center", 20_000, center, seed=16))
     with TracedTriangles(context, library, meshes, center) as scene:
-        first = scene.cubemap.memory_bytes
+        first = scene.structure.memory_bytes
         hits = scene.trace(rays)
         scene.build(64)
-        assert scene.cubemap.memory_bytes == first  # what has grown is kept
+        assert scene.structure.memory_bytes == first  # what has grown is kept
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(hits))
     assert different(hits, Reference(meshes).trace(rays)) == 0
 
@@ -253,7 +253,7 @@ def test_a_crowd_at_the_center(context, library):
     crowd = (rng.normal(size=(5000, 1, 3)) * 1e-5 + rng.normal(size=(5000, 3, 3)) * 1e-5).astype(np.float32)
     triangles = np.concatenate([box((-1, -1, -1), (1, 1, 1)).astype(np.float32), crowd])
     with TracedTriangles(context, library, triangles, (0, 0, 0), 32) as scene:
-        assert scene.cubemap.counts["core"] > 4000
+        assert scene.structure.counts["core"] > 4000
         for kind in KINDS:
             rays = ray_records(*make_rays(kind, 1000, (0, 0, 0), seed=18))
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
@@ -263,19 +263,19 @@ def test_what_the_device_cannot_hold_makes_coarser_cells(context, library, meshe
     """And the same hits; with a warning where more than the fragments is too long."""
     rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=19))
     with TracedTriangles(context, library, meshes, PLAIN, 0) as scene:
-        expected, tiles, finest = scene.trace(rays), scene.cubemap.counts["tile"], scene.cubemap.resolution
-        assert max(scene.cubemap.memory_bytes.values()) > 1 << 19
+        expected, tiles, finest = scene.trace(rays), scene.structure.counts["tile"], scene.structure.resolution
+        assert max(scene.structure.memory_bytes.values()) > 1 << 19
     monkeypatch.setattr(Context, "array_limit", lambda device, _: device.storage_block_limit)
     for limit in (1 << 19, 360_000):
         caplog.clear()
         monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
         with TracedTriangles(context, library, meshes, PLAIN, 0) as scene:
-            assert max(scene.cubemap.memory_bytes.values()) <= limit
-            assert scene.cubemap.counts["tile"] < tiles
+            assert max(scene.structure.memory_bytes.values()) <= limit
+            assert scene.structure.counts["tile"] < tiles
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
             scene.build(0)  # again, starting with what was learned
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
-    assert scene.cubemap.resolution < finest
+    assert scene.structure.resolution < finest
     assert "allows 0 MiB in one buffer" in caplog.text and "for now cells stay at a resolution" in caplog.text
 
 
@@ -284,13 +284,13 @@ def test_lists_that_are_longer_than_a_block(context, library, meshes, monkeypatc
     """Make the same cells, written and read as texels."""
     rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=19))
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
-        expected, counts, finest = scene.trace(rays), scene.cubemap.counts, scene.cubemap.resolution
+        expected, counts, finest = scene.trace(rays), scene.structure.counts, scene.structure.resolution
     limit = 1 << 17  # enough for cells and bins
     monkeypatch.setattr(deep_cubemap, "_expected", lambda *_: {"tile": 200})
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
-        assert scene.cubemap.counts == counts and scene.cubemap.resolution == finest
-        long = {name for name, size in scene.cubemap.memory_bytes.items() if size > limit}
+        assert scene.structure.counts == counts and scene.structure.resolution == finest
+        long = {name for name, size in scene.structure.memory_bytes.items() if size > limit}
         lists = {"jobs", "fragments", "fragments of the level above", "entries", "binned fragments"}
         assert long == {f"deep cubemap {name}" for name in lists}
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
@@ -307,7 +307,7 @@ def test_triangles_that_the_device_cannot_hold_are_an_error(context, library, me
             fresh.build(scene.triangles, len(meshes), PLAIN, 2.0)
         monkeypatch.undo()
         fresh.build(scene.triangles, len(meshes), PLAIN, 2.0)  # and it can be built after an error
-        scene.cubemap, old = fresh, scene.cubemap
+        scene.structure, old = fresh, scene.structure
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
         old.release()
 
@@ -321,12 +321,12 @@ def test_resolutions_are_powers_of_two(context, library, resolution):
 def test_both_routes_are_tried_once(context, library, meshes):
     """Small scenes say nothing about speed; the first larger one decides."""
     with TracedTriangles(context, library, furnished_room(), PLAIN, 0, rasterize=None) as scene:
-        assert scene.cubemap.route is None
-        scene.cubemap.build(scene.triangles, len(furnished_room()), PLAIN, 2.0)
+        assert scene.structure.route is None
+        scene.structure.build(scene.triangles, len(furnished_room()), PLAIN, 2.0)
         rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=20))
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=None) as scene:
-        assert scene.cubemap.route in ("rasterization", "compute shader")
+        assert scene.structure.route in ("rasterization", "compute shader")
 
 
 def test_build_times(context, library):
@@ -337,7 +337,7 @@ def test_build_times(context, library):
             scene.build(resolution)
             context.finish()
             seconds = time.perf_counter() - start
-            counts = scene.cubemap.counts
+            counts = scene.structure.counts
         print(f"\n{counts['triangle']} triangles at {resolution}: {seconds * 1e3:.0f} ms, {counts}")
         # most triangles lie in a few cells, and in few of their depth bins
         assert counts["triangle"] <= counts["entry"] <= 12 * counts["triangle"]

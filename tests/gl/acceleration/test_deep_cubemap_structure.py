@@ -52,7 +52,7 @@ def test_every_point_is_on_file(context, library, name, place, resolution):
     triangles = SCENES[name]()
     rng = np.random.default_rng(21)
     with TracedTriangles(context, library, triangles, CENTERS[place], resolution) as scene:
-        structure = read_structure(scene.cubemap)
+        structure = read_structure(scene.structure)
         center = scene.center.astype(float)
     chosen, points = points_on(triangles, rng)
     points = points - center + rng.uniform(-4e-7, 4e-7, points.shape)
@@ -96,7 +96,7 @@ def test_every_point_is_on_file(context, library, name, place, resolution):
 @pytest.mark.parametrize("name", SCENES)
 def test_marks_tell_of_the_bins_before_and_behind(context, library, name, resolution):
     with TracedTriangles(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
-        structure = read_structure(scene.cubemap)
+        structure = read_structure(scene.structure)
     row, bin_, triangle, marks = structure.entries[:, :4].T
     order = np.lexsort((bin_, triangle, row))
     row, bin_, triangle, marks = row[order], bin_[order], triangle[order], marks[order]
@@ -117,7 +117,7 @@ def test_lists_are_for_few_triangles_and_bins_for_many(context, library):
     for name in SCENES:
         for resolution in (0, 16, 64):
             with TracedTriangles(context, library, SCENES[name](), CENTERS["plain"], resolution) as scene:
-                structure = read_structure(scene.cubemap)
+                structure = read_structure(scene.structure)
             held = np.bincount(distinct(structure)[:, 0], minlength=len(structure.kind))
             leaf, binned = structure.kind != TILE, structure.kind == BINS
             np.testing.assert_array_equal(held[leaf] == 0, structure.kind[leaf] == -1)
@@ -171,7 +171,7 @@ def touched_cells(extents: np.ndarray, x: int, y: int, side: int, slack: float) 
 def test_cells_that_hold_much_are_divided_where_that_gains(context, library, name):
     triangles, resolution = SCENES[name](), 1024
     with TracedTriangles(context, library, triangles, CENTERS["plain"], resolution) as scene:
-        structure = read_structure(scene.cubemap)
+        structure = read_structure(scene.structure)
         about = triangles.astype(float) - scene.center.astype(float)
     # triangles of each cell, handed up from the leaves
     pairs, held = distinct(structure), {}
@@ -221,10 +221,10 @@ def test_cells_that_hold_much_are_divided_where_that_gains(context, library, nam
 @pytest.mark.parametrize("most_bins", [1, 1024])
 def test_other_numbers_of_bins(context, library, most_bins):
     with TracedTriangles(context, library, SCENES["crowd"](), CENTERS["plain"], 64) as scene:
-        scene.cubemap.release()
-        scene.cubemap = DeepCubemap(context, library, True, most_bins=most_bins)
+        scene.structure.release()
+        scene.structure = DeepCubemap(context, library, True, most_bins=most_bins)
         scene.build(64)
-        structure = read_structure(scene.cubemap)
+        structure = read_structure(scene.structure)
     assert structure.state["most_bins"] == most_bins
     assert structure.bin_counts.max() <= most_bins
     held = np.bincount(distinct(structure)[:, 0], minlength=len(structure.kind))
@@ -240,10 +240,10 @@ def assert_same(first: Structure, second: Structure) -> None:
 def test_lists_are_the_same_every_time(context, library, name):
     """But for the order of cells and within a bin, which no result depends on."""
     with TracedTriangles(context, library, SCENES[name](), CENTERS["plain"], 256) as scene:
-        first = read_structure(scene.cubemap)
+        first = read_structure(scene.structure)
         scene.build(64)
         scene.build(256)
-        second = read_structure(scene.cubemap)
+        second = read_structure(scene.structure)
     assert_same(first, second)
 
 
@@ -255,7 +255,7 @@ def test_the_compute_route_builds_the_same(context, library, name, place):
     structures = []
     for rasterize in (True, False):
         with TracedTriangles(context, library, triangles, CENTERS[place], 0, rasterize) as scene:
-            structures.append(read_structure(scene.cubemap))
+            structures.append(read_structure(scene.structure))
     assert_same(*structures)
 
 
@@ -264,9 +264,9 @@ def test_small_things_in_the_distance_get_small_cells(context, library):
     ball, radius = np.array([0.7, 0.3, 0.3]), 0.01
     triangles = np.concatenate([furnished_room(1), sphere(ball, radius, 70).astype(np.float32)])
     with TracedTriangles(context, library, furnished_room(1), CENTERS["plain"], 0) as scene:
-        bare = read_structure(scene.cubemap)
+        bare = read_structure(scene.structure)
     with TracedTriangles(context, library, triangles, CENTERS["plain"], 0) as scene:
-        detailed = read_structure(scene.cubemap)
+        detailed = read_structure(scene.structure)
     assert bare.level.max() == BASE_LEVEL and detailed.level.max() >= BASE_LEVEL + 3
     finest = detailed.level == detailed.level.max()
     entries = detailed.entries[finest[detailed.entries[:, 0]]]

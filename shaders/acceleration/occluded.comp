@@ -1,12 +1,13 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
 // Whether each ray is free (1) or meets something (0) that is not the triangle that it goes to.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #define SHADOW_RAYS
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 
 layout(std430, binding = 1) restrict readonly buffer Rays;
 layout(std430, binding = 2) restrict writeonly buffer Visibility;
@@ -17,5 +18,5 @@ void main() {
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
-    visibility[index] = deep_cubemap_occluded(ray) ? 0u : 1u;
+    visibility[index] = is_occluded(ray) ? 0u : 1u;
 }

@@ -1,13 +1,14 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint:
-// lint: TEXEL_BUFFERS=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
+// lint: TRAVERSAL=bvh/traverse.glsl
 // The nearest hit of each shadow ray on what casts shadows.
 layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #define SHADOW_RAYS
 #define NEAREST_SHADOW
-#include "deep_cubemap/traverse.glsl"
+#include TRAVERSAL
 
 layout(std430, binding = 1) restrict readonly buffer Rays;
 layout(std430, binding = 2) restrict writeonly buffer Hits;
@@ -18,5 +19,5 @@ void main() {
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
-    hits[index] = deep_cubemap_hit(ray);
+    hits[index] = nearest_hit(ray);
 }

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""AccelerationStructure: what the structures that rays are traced through have in common."""
+
+from collections.abc import Iterable, Mapping
+
+import moderngl
+
+from ...gl.buffer_sets import BufferSet
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ..common import records  # noqa: F401  the kernels include Ray and Hit
+from ..common.living_paths import LivingPaths
+
+MARGIN = 2.0**-20
+"""How far cells and boxes are widened, in radii of the scene. That is thirty times the rounding error of float
+positions, so that a point that a ray reaches is found in the cell or box of its triangle."""
+
+
+class AccelerationStructure(BufferSet):
+    """Triangles on the device, sorted in space so that a ray need not be tested with all of them.
+
+    Which structure it is changes no hit: of equal distances the triangle with the lowest number is hit.
+    """
+
+    shader = ""
+    """The file below the shader folder that kernels include in place of ``#include TRAVERSAL``. It defines
+    nearest_hit(ray), is_occluded(ray) and trace_ray(ray, any_hit)."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
+        self._context, self._library = context, library
+        self._triangles: moderngl.Buffer | None = None
+        self._has_one_sided = False
+
+    def build(
+        self,
+        triangles: moderngl.Buffer,
+        triangle_count: int,
+        center: Iterable[float],
+        scene_radius: float,
+        resolution: int = 0,
+        has_one_sided: bool = False,
+    ) -> None:
+        """Sort triangles into the structure.
+
+        ``triangles`` holds three vec4 a triangle and must stay as it is while rays are traced. ``scene_radius``: the
+        greatest distance from ``center`` of any vertex (meters); nothing farther out is hit. Rays may start anywhere,
+        yet lose precision from some ten radii on. ``resolution``: of a deep cubemap. ``has_one_sided``: whether any
+        triangle is met by rays from outside only. Triangles with infinite or NaN coordinates are left out.
+        Raises ValueError for resolutions that there are not, and DeviceError where the device's limits are too low.
+        """
+        raise NotImplementedError
+
+    @property
+    def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
+        """Buffers by block name that kernels which include TRAVERSAL need."""
+        raise NotImplementedError
+
+    @property
+    def traversal_defines(self) -> dict[str, object]:
+        """Defines of kernels which include TRAVERSAL."""
+        one_sided: dict[str, object] = {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else {}
+        return {"TRAVERSAL": self.shader, **one_sided}
+
+    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
+        """Find the nearest hits of the living paths' Ray records; writes Hit records.
+
+        A hit at just maximum_distance counts, one at distance 0 does not. Where nothing is hit,
+        triangle is NO_TRIANGLE and the rest without meaning.
+        """
+        self._trace("acceleration/trace.comp", {"Rays": rays, "Hits": hits}, living)
+
+    def occluded(
+        self,
+        rays: moderngl.Buffer,
+        targets: moderngl.Buffer,
+        visibility: moderngl.Buffer,
+        living: LivingPaths,
+        linking: Mapping[str, moderngl.Buffer] | None = None,
+    ) -> None:
+        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0.
+
+        targets: of each, the triangle that the ray goes to, which does not count, or NO_TRIANGLE; uint.
+        linking: the buffers Contributions and LightLinks, where these say what may be in a ray's way.
+        """
+        kernel = "acceleration/occluded_linked.comp" if linking else "acceleration/occluded.comp"
+        buffers = {"Rays": rays, "LightTriangles": targets, "Visibility": visibility, **(linking or {})}
+        self._trace(kernel, buffers, living)
+
+    def shadow_hits(
+        self,
+        rays: moderngl.Buffer,
+        targets: moderngl.Buffer,
+        hits: moderngl.Buffer,
+        living: LivingPaths,
+        linking: Mapping[str, moderngl.Buffer] | None = None,
+    ) -> None:
+        """Find the nearest hits of shadow rays as trace does, of what counts for occluded."""
+        kernel = "acceleration/shadow_hits_linked.comp" if linking else "acceleration/shadow_hits.comp"
+        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, living)
+
+    def _trace(self, kernel: str, buffers: Mapping[str, moderngl.Buffer], living: LivingPaths) -> None:
+        program = self._library.compute(kernel, self.traversal_defines)
+        living.run(program, {**self.traversal_buffers, **buffers})

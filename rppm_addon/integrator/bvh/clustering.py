@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Builds a binary bounding volume hierarchy from the bottom up by parallel locally-ordered clustering.
+
+The boxes are sorted along a Morton curve. In every pass each cluster finds, among its neighbors along the curve, the
+one with which it shares the box of the least area; two clusters that find each other become one. (Meister and
+Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", IEEE TVCG 2018.) The trees
+are about as good as those of a binned surface area heuristic.
+"""
+
+import concurrent.futures
+import functools
+
+import numpy as np
+
+from ...gl.records import Record
+from ...processors import usable_cores
+
+NODE = Record("BvhNode", low0="vec3", child0="uint", high0="vec3", low1="vec3", child1="uint", high1="vec3")
+"""An inner node: the boxes of its two children, meters, and what the children are: the number of an inner node, or
+LEAF and what a leaf holds."""
+
+MOST_DEPTH = 64
+"""Inner nodes between the root and any leaf, at most: a ray's stack has so many places."""
+
+_REACH = 8
+"""Neighbors to either side that a cluster is compared with."""
+_FEW, _REACH_OF_FEW = 2048, 32
+"""So few clusters are compared with more of their neighbors, as they are the top of the tree, which every ray meets."""
+_BLOCK = 1 << 14
+"""Clusters that are compared at a time, whose boxes fit into a processor's cache."""
+_MORTON_BITS = 20
+"""Per axis."""
+
+
+def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.ndarray:
+    """Nodes of the hierarchy of boxes, NODE records, the root first.
+
+    low, high: (3, n) float32, the boxes' corners, meters; children: (n,) uint32, what stands for each box in its
+    node. There are n - 1 nodes, and n must be 2 or more. No leaf lies deeper than MOST_DEPTH nodes.
+    """
+    order = np.argsort(_morton_codes(low, high))
+    low, high, children = np.take(low, order, axis=1), np.take(high, order, axis=1), children[order]
+    nodes = NODE.zeros(len(order) - 1)
+    end = len(nodes)
+    """Nodes are numbered from the last to the first, the root, so that each stands before its children."""
+    passes = 0
+    workers = concurrent.futures.ThreadPoolExecutor(usable_cores(), "RPPM hierarchy")
+    with workers:
+        while len(children) > 1:
+            count = len(children)
+            # A pass deepens the tree by one at most.
+            is_deep = passes + (count - 1).bit_length() >= MOST_DEPTH
+            first, second = _next_in_line(count) if is_deep else _mutually_nearest(low, high, workers)
+            passes += 1
+            made = slice(end - len(first), end)
+            _fill(nodes[made], low, high, children, first, second)
+            children[first] = np.arange(made.start, made.stop, dtype=np.uint32)
+            low[:, first] = np.minimum(low[:, first], low[:, second])
+            high[:, first] = np.maximum(high[:, first], high[:, second])
+            end = made.start
+            is_left = np.ones(count, bool)
+            is_left[second] = False
+            left = np.flatnonzero(is_left)
+            low, high, children = np.take(low, left, axis=1), np.take(high, left, axis=1), children[left]
+    return nodes
+
+
+def _fill(
+    nodes: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    children: np.ndarray,
+    first: np.ndarray,
+    second: np.ndarray,
+) -> None:
+    for side, clusters in enumerate((first, second)):
+        nodes[f"low{side}"], nodes[f"high{side}"] = low[:, clusters].T, high[:, clusters].T
+        nodes[f"child{side}"] = children[clusters]
+
+
+def _morton_codes(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """(n,) uint64: the places of the boxes' centers along a Morton curve through a cube around all of them."""
+    centers = low + high  # twice the centers
+    least = centers.min(axis=1, keepdims=True)
+    side = float((centers.max(axis=1, keepdims=True) - least).max())
+    cells = ((centers - least) * np.float32((2**_MORTON_BITS - 1) / max(side, 1e-30))).astype(np.uint64)
+    codes = np.zeros(cells.shape[1], np.uint64)
+    for axis, cell in enumerate(cells):
+        for shift, mask in (
+            (32, 0x1F00000000FFFF),
+            (16, 0x1F0000FF0000FF),
+            (8, 0x100F00F00F00F00F),
+            (4, 0x10C30C30C30C30C3),
+            (2, 0x1249249249249249),
+        ):
+            cell = (cell | cell << np.uint64(shift)) & np.uint64(mask)
+        codes |= cell << np.uint64(2 - axis)
+    return codes
+
+
+def _next_in_line(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of clusters that follow each other along the curve: the numbers of the first and of the second ones."""
+    first = np.arange(0, count - 1, 2)
+    return first, first + 1
+
+
+def _mutually_nearest(
+    low: np.ndarray, high: np.ndarray, workers: concurrent.futures.Executor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of clusters each of which shares the box of the least area with the other: the numbers of the first and
+    of the second ones. There is one at least."""
+    count = low.shape[1]
+    reach = min(_REACH if count > _FEW else _REACH_OF_FEW, count - 1)
+    partners = np.empty(count, np.int32)
+    of_block = functools.partial(_find_partners, low, high, reach, partners)
+    list(workers.map(of_block, range(0, count, _BLOCK)))
+    numbers = np.arange(count, dtype=np.int32)
+    first = np.flatnonzero((partners[partners] == numbers) & (numbers < partners))
+    # Areas beyond the range of floats are equal to none.
+    return (first, partners[first]) if len(first) else _next_in_line(count)
+
+
+def _find_partners(low: np.ndarray, high: np.ndarray, reach: int, partners: np.ndarray, begin: int) -> None:
+    """Fill in the partners of a block of clusters: of each the neighbor, among ``reach`` to either side, with which it
+    shares the box of the least area. Of equal areas all clusters prefer the same pair, lest none find each other."""
+    end = min(begin + _BLOCK, len(partners))
+    first, last = max(begin - reach, 0), min(end + reach, len(partners))
+    low, high = low[:, first:last], high[:, first:last]
+    count = last - first
+    numbers = np.arange(first, last, dtype=np.int32)
+    least, nearest = np.full(count, np.inf, np.float32), numbers.copy()
+    sizes, lows = np.empty((3, count), np.float32), np.empty((3, count), np.float32)
+    areas, is_nearer = np.empty(count, np.float32), np.empty(count, bool)
+
+    def take(which: slice, partner: slice, area: np.ndarray, nearer: np.ndarray) -> None:
+        np.copyto(least[which], area, where=nearer)
+        np.copyto(nearest[which], numbers[partner], where=nearer)
+
+    with np.errstate(over="ignore"):  # areas beyond the range of floats are the least of none
+        for distance in range(1, min(reach, count - 1) + 1):
+            pairs = count - distance
+            before, behind = slice(pairs), slice(distance, None)
+            size, area, nearer = sizes[:, before], areas[before], is_nearer[before]
+            np.maximum(high[:, behind], high[:, before], out=size)
+            size -= np.minimum(low[:, behind], low[:, before], out=lows[:, before])
+            np.add(size[1], size[2], out=area)
+            area *= size[0]
+            size[1] *= size[2]
+            area += size[1]
+            # In a row of equal boxes every other pair comes first, so that all find a partner at once.
+            comes_first = (numbers[before] // distance) & 1 == 0
+            np.less(area, least[before], out=nearer)
+            nearer &= comes_first
+            take(before, behind, area, nearer)
+            np.less(area, least[behind], out=nearer)
+            take(behind, before, area, nearer)
+            np.less(area, least[before], out=nearer)
+            nearer &= ~comes_first
+            take(before, behind, area, nearer)
+    partners[begin:end] = nearest[begin - first : end - first]

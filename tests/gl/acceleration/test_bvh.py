@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hits through the BVH are those of testing every triangle, and those of the deep cubemap, bit for bit."""
+
+import dataclasses
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scenes
+from deep_cubemap_rays import KINDS, make_rays
+from deep_cubemap_scenes import CENTERS, furnished_room, room_with_meshes
+from moving_scenes import everything_moves
+
+from rppm_addon.gl.context import Context
+from rppm_addon.integrator.bvh import bvh, clustering
+from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.device_scene.acceleration import Acceleration
+from rppm_addon.scene import AccelerationStructure
+from rppm_addon.scene.errors import DeviceError
+from rppm_addon.scene.passes import DEEP_CUBEMAP
+from rppm_addon.self_test.ray_queries import TracedTriangles, ray_records
+
+PLAIN = CENTERS["plain"]
+
+
+def bits(hits: np.ndarray) -> np.ndarray:
+    return hits.view(np.uint32).reshape(-1, 4)
+
+
+@pytest.fixture
+def traced(context, library):
+    """Of triangles, with a BVH."""
+    opened = []
+
+    def trace(triangles, **options):
+        opened.append(
+            TracedTriangles(context, library, triangles, PLAIN, structure=bvh.Bvh(context, library), **options)
+        )
+        return opened[-1]
+
+    yield trace
+    for scene in opened:
+        scene.release()
+
+
+@pytest.mark.parametrize("scale, offset", [(1.0, 0.0), (0.01, 0.0), (100.0, 0.0), (1.0, 1000.0)])
+def test_hits_equal_those_of_brute_force(traced, scale, offset):
+    scene = traced(furnished_room(4) * np.float32(scale) + np.float32(offset))
+    for kind in KINDS:
+        origins, directions = make_rays(kind, 20_000, PLAIN, seed=5)
+        rays = ray_records(origins * np.float32(scale) + np.float32(offset), directions)
+        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(scene.brute_force(rays)))
+
+
+def test_hits_equal_those_of_a_deep_cubemap(context, library, traced):
+    meshes = room_with_meshes(100_000)
+    scene = traced(meshes)
+    with TracedTriangles(context, library, meshes, PLAIN, 0) as cubemap:
+        for kind in KINDS:
+            rays = ray_records(*make_rays(kind, 50_000, PLAIN, seed=6))
+            np.testing.assert_array_equal(bits(scene.trace(rays)), bits(cubemap.trace(rays)))
+
+
+def test_any_hit_decides_as_the_nearest_hit_does(traced):
+    scene = traced(room_with_meshes(10_000))
+    rays = ray_records(*make_rays("uniform", 50_000, PLAIN, seed=7))
+    distances = scene.trace(rays)["distance"]
+    rays["maximum_distance"] = np.random.default_rng(8).uniform(0.0, 2.0, len(rays))
+    rays["maximum_distance"][::3] = distances[::3]
+    rays["maximum_distance"][1::3] = np.nextafter(distances[1::3], np.float32(0))
+    free = scene.occluded(rays)
+    np.testing.assert_array_equal(free == 1, rays["maximum_distance"] < distances)
+    assert 0.2 < free.mean() < 0.8
+
+
+def test_source_and_target_triangles_are_never_hit(traced):
+    scene = traced(furnished_room(4))
+    rays = ray_records(*make_rays("uniform", 20_000, PLAIN, seed=9))
+    hits = scene.trace(rays)
+    rays["source_triangle"] = hits["triangle"]
+    assert not np.any(scene.trace(rays)["triangle"] == rays["source_triangle"])
+    rays["source_triangle"], rays["maximum_distance"] = NO_TRIANGLE, hits["distance"]
+    assert np.all(scene.occluded(rays) == 0)
+    free = scene.occluded(rays, hits["triangle"])
+    rays["source_triangle"] = hits["triangle"]
+    np.testing.assert_array_equal(free == 1, scene.trace(rays)["triangle"] == NO_TRIANGLE)
+
+
+def test_rays_that_are_inactive_or_broken_miss(traced):
+    rays = ray_records(*make_rays("uniform", 64, PLAIN, seed=11))
+    rays["maximum_distance"][:16] = 0.0
+    rays["maximum_distance"][16:24] = np.nan
+    rays["origin"][24:32, 1] = np.nan
+    rays["direction"][32:40] = np.inf
+    rays["direction"][40:48] = 0.0
+    hits = traced(furnished_room(1)).trace(rays)
+    assert np.all(hits["triangle"][:48] == NO_TRIANGLE) and np.all(hits["triangle"][48:] != NO_TRIANGLE)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 3, 4, 5])
+def test_few_triangles(traced, count):
+    """Stacked up along x, seen along x."""
+    corner = np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], np.float32)
+    scene = traced(np.array([corner + np.float32([1 + i, 0, 0]) for i in range(count)]).reshape(-1, 3, 3))
+    origins = np.array([[0.0, 0.2, 0.2], [0.0, 0.8, 0.8]] + [[1.5 + i, 0.2, 0.2] for i in range(5)])
+    rays = ray_records(origins, np.tile([1.0, 0.0, 0.0], (7, 1)))
+    expected = [0, NO_TRIANGLE, 1, 2, 3, 4, NO_TRIANGLE]
+    found = scene.trace(rays)["triangle"]
+    assert [int(triangle) for triangle in found] == [t if t < count else NO_TRIANGLE for t in expected]
+
+
+def test_broken_triangles_do_no_harm(traced):
+    room = furnished_room(4)
+    broken = room[np.random.default_rng(14).integers(0, len(room), 60)].copy()
+    broken[:20, 1, 2] = np.nan
+    broken[20:30, 0] = np.inf
+    broken[30:40, 2, 0] = -np.inf
+    broken[40:50] = broken[40:50, :1]  # points
+    broken[50:, 2] = broken[50:, 0]  # lines
+    scene, whole = traced(np.concatenate([room, broken])), traced(room)
+    for kind in KINDS:
+        rays = ray_records(*make_rays(kind, 10_000, PLAIN, seed=15))
+        np.testing.assert_array_equal(bits(scene.trace(rays)), bits(whole.trace(rays)))
+
+
+def depth_of(nodes: np.ndarray) -> int:
+    """Nodes between the root and the deepest leaf; each node has a lower number than its children."""
+    depths = np.ones(len(nodes), int)
+    for number, node in enumerate(nodes):
+        for child in (node["child0"], node["child1"]):
+            if child < bvh.LEAF:
+                assert child > number
+                depths[child] = depths[number] + 1
+    return int(depths.max())
+
+
+def leaves_of(nodes: np.ndarray) -> np.ndarray:
+    children = np.concatenate([nodes["child0"], nodes["child1"]])
+    return np.sort(children[children >= bvh.LEAF])
+
+
+def assert_boxes_enclose(nodes: np.ndarray) -> None:
+    for side in "01":
+        for box in nodes[nodes[f"child{side}"] < bvh.LEAF]:
+            inner = nodes[box[f"child{side}"]]
+            np.testing.assert_array_equal(box[f"low{side}"], np.minimum(inner["low0"], inner["low1"]))
+            np.testing.assert_array_equal(box[f"high{side}"], np.maximum(inner["high0"], inner["high1"]))
+
+
+HARD = {
+    "all in one place": lambda rng, count: np.zeros((3, count)),
+    "in a row": lambda rng, count: np.arange(count) * np.array([[1.0], [0.0], [0.0]]),
+    "ever smaller": lambda rng, count: 2.0 ** -(np.arange(count) % 120) * np.ones((3, 1)),
+    "anywhere": lambda rng, count: rng.normal(size=(3, count)),
+    "far beyond squares of floats": lambda rng, count: rng.normal(size=(3, count)) * 1e30,
+}
+
+
+@pytest.mark.parametrize("place", HARD)
+def test_hierarchies_hold_each_box_once_and_are_not_deep(place):
+    low = HARD[place](np.random.default_rng(3), 3001).astype(np.float32)
+    leaves = np.uint32(bvh.LEAF) | np.arange(3001, dtype=np.uint32)
+    nodes = clustering.build_nodes(low, low + np.float32(0.01), leaves.copy())
+    np.testing.assert_array_equal(leaves_of(nodes), leaves)
+    assert_boxes_enclose(nodes)
+    assert depth_of(nodes) <= clustering.MOST_DEPTH
+
+
+def test_hierarchies_are_the_same_each_time():
+    """Whatever the number of threads that build them."""
+    low = np.random.default_rng(4).normal(size=(3, 50_000)).astype(np.float32)
+    leaves = np.uint32(bvh.LEAF) | np.arange(50_000, dtype=np.uint32)
+    built = [clustering.build_nodes(low.copy(), low + np.float32(0.01), leaves.copy()) for _ in range(2)]
+    np.testing.assert_array_equal(*built)
+    assert depth_of(built[0]) < 40
+
+
+def test_quadrilaterals_share_a_leaf():
+    """Two triangles that do not lie together share none."""
+    square = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], np.float32)
+    strangers = square + np.float32([[[5, 0, 0]], [[0, 0, 9]]])
+    nodes = bvh.bvh_nodes(np.concatenate([square, strangers]), 0.0)
+    np.testing.assert_array_equal(leaves_of(nodes) & 3, [2, 1, 1])
+    np.testing.assert_array_equal((leaves_of(nodes) & ~np.uint32(bvh.LEAF)) >> 2, [0, 2, 3])
+
+
+def test_what_the_device_cannot_hold_is_an_error(context, traced, monkeypatch):
+    meshes = room_with_meshes(10_000)
+    scene = traced(meshes)
+    fresh = bvh.Bvh(context, scene.library)
+    monkeypatch.setattr(Context, "array_limit", lambda *_: 1 << 16)
+    with pytest.raises(DeviceError, match="BVH nodes needs .*simplify the geometry"):
+        fresh.build(scene.triangles, len(meshes), PLAIN, 2.0)
+
+
+def films(mapper, scene, structure):
+    """Of a scene, and after an object was moved."""
+    scene = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, acceleration_structure=structure))
+    moved = dataclasses.replace(scene, instances=[*scene.instances])
+    matrix = np.array(moved.instances[8].matrix)
+    matrix[:3, 3] += 0.1, -0.2, 0.1
+    moved.instances[8] = dataclasses.replace(moved.instances[8], matrix=matrix)
+    found = []
+    for update, shown in ((mapper.build, scene), (mapper.update, moved)):
+        update(shown)
+        mapper.iterate()
+        found.append(mapper.film.read_radiance())
+    return found
+
+
+def test_pictures_are_the_same(mapper):
+    """Through either structure, of instances that move while the shutter is open; and where one has been moved."""
+    scene = everything_moves(scenes.crowded_room(16, photons=256, camera_path_length=3, photon_path_length=3), 1.0)
+    expected = films(mapper, scene, AccelerationStructure.DEEP_CUBEMAP)
+    assert "deep cubemap cells" in mapper.memory_bytes
+    found = films(mapper, scene, AccelerationStructure.BVH)
+    assert "BVH nodes" in mapper.memory_bytes and "deep cubemap cells" not in mapper.memory_bytes
+    np.testing.assert_array_equal(found, expected)
+    assert not np.array_equal(*expected)
+
+
+@pytest.mark.parametrize("is_software", [False, True])
+def test_a_software_driver_traces_through_the_bvh(library, is_software):
+    scene = scenes.room(16)
+    choice = Acceleration(SimpleNamespace(is_software=is_software), library)
+    expected = AccelerationStructure.BVH if is_software else AccelerationStructure.DEEP_CUBEMAP
+    assert choice.kind(scene) is expected
+    pictured = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, passes=(DEEP_CUBEMAP.name,)))
+    assert choice.kind(pictured) is AccelerationStructure.DEEP_CUBEMAP
+
+
+def test_a_camera_that_moves_builds_no_bvh(mapper, monkeypatch):
+    scene = scenes.room(16, acceleration_structure=AccelerationStructure.BVH)
+    mapper.build(scene)
+    monkeypatch.setattr(bvh.Bvh, "build", lambda *_: pytest.fail("built again"))
+    matrix = np.array(scene.camera.matrix)
+    matrix[:3, 3] += 0.3
+    mapper.update(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, matrix=matrix)))
