@@ -16,8 +16,8 @@ struct SlabTest {
     vec3 inverse_direction; // finite
 };
 
-// Where a ray enters a box, and whether it meets the box before a distance. Both ends give way by more than the rounding
-// errors of the quotients, so that no box is missed whose triangle is hit.
+// Where a ray enters a box, and whether it meets the box before a distance. Both ends give way by more than the
+// rounding errors of the quotients, so that no box is missed whose triangle is hit.
 bool meets_box(SlabTest slabs, vec3 low, vec3 high, float distance, out float enter) {
     vec3 a = (low - slabs.origin) * slabs.inverse_direction, b = (high - slabs.origin) * slabs.inverse_direction;
     vec3 near = min(a, b), far = max(a, b);
