@@ -17,7 +17,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
     yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
-    photons_taken = []
+    photons_taken, noise_samples = [], []
+    stages.photon_noise.begin()
     yield
     for band in stages.bands:
         stages.clear(context)
@@ -28,6 +29,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
                 break
+            stages.photon_noise.count(importons, iteration)
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
             yield
@@ -46,8 +48,9 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
-        if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
+        if iteration.enters_film or iteration.precedes_learning:
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
+        if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
             film.accumulate(context, importons.radiances, estimator.sums, band, iteration)
             film.add_aovs(importons, band, iteration)
             stages.noise_estimate.add(context, importons.radiances, estimator.sums, band, iteration)
@@ -56,11 +59,18 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             )
             groups.accumulate(context, stages.final_gather, estimator.sums, film, band, iteration, radii)
         if iteration.precedes_learning:
-            photons_taken.append(estimator.sums.photons_taken(band.pixel_count)[:, 0])
-            fewer = learning.fewer(iteration)
-            stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fewer, context.timers)
+            photons_taken.append(estimator.sums.photons_taken(band.pixel_count))
+            stages.caustic_radii.count(estimator.sums, band, context.timers)
+            if learning.weighs_noise:
+                gather, sums = stages.final_gather, estimator.sums
+                noise_samples.append(
+                    stages.photon_noise.sample(context, importons, gather, sums, band, iteration, radii)
+                )
     if iteration.is_tallied:
-        learning.tally(context, photons, estimator.photon_list, iteration, photons_taken)
+        learning.tally(context, photons, iteration, photons_taken)
+    if iteration.precedes_learning:
+        learning.weigh_noise(iteration, photons, stages.photon_noise.vertices, photons_taken, noise_samples)
+        stages.caustic_radii.narrow(iteration, radii, learning.fewer(iteration), context.timers)
     yield
 
 
