@@ -60,7 +60,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             groups.accumulate(context, stages.final_gather, estimator.sums, film, band, iteration, radii)
         if iteration.precedes_learning:
             photons_taken.append(estimator.sums.photons_taken(band.pixel_count))
-            stages.caustic_radii.count(estimator.sums, band, context.timers)
+            fraction = learning.photon_fraction(iteration)
+            stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fraction, context.timers)
             if learning.weighs_noise:
                 gather, sums = stages.final_gather, estimator.sums
                 noise_samples.append(
@@ -70,7 +71,6 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         learning.tally(context, photons, iteration, photons_taken)
     if iteration.precedes_learning:
         learning.weigh_noise(iteration, photons, stages.photon_noise.vertices, photons_taken, noise_samples)
-        stages.caustic_radii.narrow(iteration, radii, learning.fewer(iteration), context.timers)
     yield
 
 

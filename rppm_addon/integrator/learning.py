@@ -91,9 +91,9 @@ class Learning:
         shrunk = shrinkage(number, self._alpha)
         return Radii(*self.limits, self.wide_radius, self._scale, self._most_factor, shrunk)
 
-    def fewer(self, iteration: Iteration) -> float:
-        """Photons of the next iteration over those of this one."""
-        return self.photon_counts.of(iteration.number + 1) / iteration.photon_count
+    def photon_fraction(self, iteration: Iteration) -> float:
+        """Photons of an iteration over those of the first."""
+        return iteration.photon_count / self.photon_counts.first
 
     def direct_world_flux(self, lights: Lights) -> float:
         """Iteration's, of the next one: where few rays leave the scene, photons find in, and all rays see the world."""

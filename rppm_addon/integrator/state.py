@@ -42,7 +42,7 @@ class RenderState:
     """(cells, 2) uint32 of the guide: photons that left through each cell, and those that contributed."""
     learned: np.ndarray | None
     """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
-    rest: np.ndarray | None = None
+    rest: np.ndarray | None
     """(rows, columns) float32 of some pixels: the luminance that came without photons in the last iteration that was
     learned from, while others are to be; None where photons are not automatic."""
     half: np.ndarray | None = None
@@ -100,6 +100,11 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
             "the checkpoint is of a render without a noise threshold; go on without one (use_adaptive_sampling) or "
             "begin anew"
         )
+    if state.rest is None:
+        if learning.weighs_noise and state.iteration < LEARNING_ITERATIONS:
+            raise CheckpointError("the checkpoint does not tell the noise of photons; begin anew")
+    elif state.rest.shape != stages.photon_noise.shape:
+        raise CheckpointError(f"the checkpoint has {state.rest.shape} samples of noise; begin anew")
     stages.caustic_radii.restore(state.radius_factors)
     learning.photon_counts, learning.photon_noise = state.photon_counts, state.photon_noise
     learning.rest = state.rest

@@ -6,15 +6,16 @@ layout(local_size_x = 64) in;
 
 #include <NarrowParameters>
 #include "common/invocation.glsl"
+#include "splat_sums/sums.glsl"
 layout(std140, binding = 0) uniform Parameters { NarrowParameters parameters; };
-layout(std430, binding = 0) readonly buffer CausticsTaken;
+layout(std430, binding = 0) readonly buffer PhotonCounts;
 layout(std430, binding = 1) buffer RadiusFactors;
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     float factor = parameters.iteration == 1u ? parameters.most_factor : radius_factors[index];
-    float taken = caustics_taken[index];
+    float taken = float(photon_counts[caustic_place(index)]);
     if (taken > parameters.expected) factor = max(factor * sqrt(parameters.expected / taken), 1.0);
     radius_factors[index] = factor;
 }

@@ -13,7 +13,6 @@ from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
 from ...gl.timers import StageTimers
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
@@ -22,9 +21,10 @@ from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
 
-Record("CountCausticsParameters", count="uint", photons_for_one="float")
 Record("NarrowParameters", count="uint", iteration="uint", most_factor="float", expected="float")
-StorageBlock("CausticsTaken", "float caustics_taken[];")
+
+_LEAST_FRACTION = 0.25
+"""Of the first iteration's photons: disks of fewer hold too few to tell how dense they lie."""
 
 
 class CausticRadii(BufferSet):
@@ -32,44 +32,35 @@ class CausticRadii(BufferSet):
 
     remedy = "lower the resolution"
     _factors = FilmBuffer("radius factors", "float")
-    _taken = FilmBuffer("caustic photons taken", "float")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._count = library.compute("caustic_radii/count.comp")
-        self._narrow = library.compute("caustic_radii/narrow.comp")
-        self._bands = sizes.bands
+        self._program = library.compute("caustic_radii/narrow.comp")
 
     def factors(self, band: Band) -> moderngl.Buffer:
         """(pixels,) float32 of a band of the film."""
         return self._factors.of(band)
 
-    def count(self, sums: SplatSums, band: Band, timers: StageTimers) -> None:
-        """Keep how many photons a band's pixels took in an iteration, to be learned from."""
-        with timers.stage("learning"):
-            self._count.run(
-                band.pixel_count,
-                {"PhotonCounts": sums.photon_counts, "CausticsTaken": self._taken.of(band)},
-                {"count": band.pixel_count, "photons_for_one": sums.photons_for_one},
-            )
+    def narrow(
+        self, sums: SplatSums, band: Band, iteration: Iteration, radii: Radii, fraction: float, timers: StageTimers
+    ) -> None:
+        """Learn from the photons that a band's pixels took in an iteration.
 
-    def narrow(self, iteration: Iteration, radii: Radii, fewer: float, timers: StageTimers) -> None:
-        """Learn from the photons that were counted in all bands.
-
-        fewer: photons of the next over those of this iteration.
+        fraction: photons of the iteration over those of the first. Of fewer photons disks hold fewer: that makes
+        noise, which is weighed (common/photon_counts.py), and no wider blur.
         """
+        held = max(fraction, _LEAST_FRACTION)
         with timers.stage("learning"):
-            for band in self._bands:
-                self._narrow.run(
-                    band.pixel_count,
-                    {"CausticsTaken": self._taken.of(band), "RadiusFactors": self._factors.of(band)},
-                    {
-                        "count": band.pixel_count,
-                        "iteration": iteration.number,
-                        "most_factor": radii.most_factor,
-                        "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 / fewer,
-                    },
-                )
+            self._program.run(
+                band.pixel_count,
+                {"PhotonCounts": sums.photon_counts, "RadiusFactors": self._factors.of(band)},
+                {
+                    "count": band.pixel_count,
+                    "iteration": iteration.number,
+                    "most_factor": radii.most_factor,
+                    "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 * held / sums.photons_for_one,
+                },
+            )
 
     def read(self) -> np.ndarray:
         """(height, width) float32 factors, once the first iteration has been."""

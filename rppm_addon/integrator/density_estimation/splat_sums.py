@@ -179,5 +179,12 @@ class SplatSums(BufferSet):
     def photons_taken(self, count: int) -> np.ndarray:
         """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:
         diffused ones, and caustic ones but for those at the ends of gathering rays."""
-        words = self._photon_counts.read(np.uint32, _COUNT_WORDS * count).reshape(-1, _COUNT_WORDS)
-        return words[:, :2] * self.photons_for_one
+        return self._counted(count)[:, :2] * self.photons_for_one
+
+    def signed(self, count: int) -> np.ndarray:
+        """(count, 2) int64 quanta of luminance of the band's first pixels, each photon path with a random sign: what
+        their importons took, what their rays found."""
+        return np.ascontiguousarray(self._counted(count)[:, 2:]).view(np.int64)
+
+    def _counted(self, count: int) -> np.ndarray:
+        return self._photon_counts.read(np.uint32, _COUNT_WORDS * count).reshape(-1, _COUNT_WORDS)

@@ -55,6 +55,8 @@ class PhotonNoise(BufferSet):
         self._split = library.compute("photon_noise/split.comp")
         self._join = library.compute("photon_noise/join.comp")
         self.step = sample_step(sizes.width, sizes.height)
+        self.shape = math.ceil(sizes.height / self.step), math.ceil(sizes.width / self.step)
+        """Rows and columns of the samples of all bands."""
         self.vertices = 0
         """Vertices of the iteration's camera paths so far."""
 

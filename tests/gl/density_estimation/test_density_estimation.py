@@ -30,7 +30,7 @@ ITERATIONS = 3
 
 
 def rendered(mapper, scene: Scene, route: DensityEstimation) -> list[np.ndarray]:
-    """The film, the radii, how many photons the last pixels took in each iteration, and which of its photons
+    """The film, the radii, how many photons the last pixels took in each iteration, their sums with signs, and which of its photons
     contributed."""
     scene = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, density_estimation=route))
     mapper.build(scene)
@@ -38,7 +38,8 @@ def rendered(mapper, scene: Scene, route: DensityEstimation) -> list[np.ndarray]
     for _ in range(ITERATIONS):
         mapper.iterate()
         photons = mapper.read_photons()
-        found += [mapper.stages.density_estimator.sums.photons_taken(mapper.stages.bands[-1].pixel_count)]
+        sums, count = mapper.stages.density_estimator.sums, mapper.stages.bands[-1].pixel_count
+        found += [sums.photons_taken(count), sums.signed(count)]
         found += [(photons["depth"] & PHOTON_CONTRIBUTED != 0) & (photons["flags"] & PhotonFlag.STORED != 0)]
     state = mapper.state()
     return [state.radiance, np.array([state.wide_radius]), state.radius_factors, *found]

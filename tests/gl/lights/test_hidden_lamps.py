@@ -41,7 +41,7 @@ def test_the_light_that_is_seen_keeps_its_photons(mapper):
         mapper.build(caustic_scene(lamps))
         for _ in range(3):
             mapper.iterate()
-        counts.append(mapper.learning.photon_counts.later)
+        counts.append(mapper.learning.photon_counts.latest)
     print(counts, photons_of_lamps(mapper))
     assert counts[0] > 0.3 * COLUMNS * ROWS  # caustics ask for many
     assert counts[1] == pytest.approx(counts[0], rel=0.05)
@@ -55,4 +55,4 @@ def test_lamps_that_the_next_frame_shows_are_found(mapper):
     for _ in range(3):
         mapper.iterate()
     print(mapper.learning.photon_counts, photons_of_lamps(mapper))
-    assert photons_of_lamps(mapper) > 0.8 * mapper.learning.photon_counts.later
+    assert photons_of_lamps(mapper) > 0.8 * mapper.learning.photon_counts.latest
