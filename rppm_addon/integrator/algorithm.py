@@ -48,7 +48,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
-        if iteration.enters_film or iteration.precedes_learning:
+        if iteration.needs_radiance:
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
         if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
             film.accumulate(context, importons.radiances, estimator.sums, band, iteration)

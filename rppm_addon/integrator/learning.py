@@ -117,8 +117,9 @@ class Learning:
 
     @property
     def weighs_noise(self) -> bool:
-        """Whether the number of photons follows the noise."""
-        return self._automatic
+        """Whether the number of photons follows the noise: without final gather all that is seen of light from other
+        surfaces would be blotches of fewer photons."""
+        return self._automatic and self._by_ray
 
     def weigh_noise(
         self,
@@ -132,7 +133,7 @@ class Learning:
 
         vertices: of its camera paths; photons_taken and samples: SplatSums' and PhotonNoise's, by band.
         """
-        if not self._automatic:
+        if not self.weighs_noise:
             return
         found = NoiseSamples.of(np.concatenate(samples))
         if self.rest is None:
