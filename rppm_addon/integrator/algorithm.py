@@ -3,10 +3,11 @@
 
 from collections.abc import Iterator
 
+from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
-from .learning import Learning
+from .learning import BandFindings, Learning
 from .stages.gbuffer import jittered_view
 from .stages.stage_set import StageSet
 
@@ -17,7 +18,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
     yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
-    photons_taken, noise_samples = [], []
+    findings: list[BandFindings] = []
     stages.photon_noise.begin()
     yield
     for band in stages.bands:
@@ -59,18 +60,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             )
             groups.accumulate(context, stages.final_gather, estimator.sums, film, band, iteration, radii)
         if iteration.precedes_learning:
-            photons_taken.append(estimator.sums.photons_taken(band.pixel_count))
-            fraction = learning.photon_fraction(iteration)
-            stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fraction, context.timers)
-            if learning.weighs_noise:
-                gather, sums = stages.final_gather, estimator.sums
-                noise_samples.append(
-                    stages.photon_noise.sample(context, importons, gather, sums, band, iteration, radii)
-                )
-    if iteration.is_tallied:
-        learning.tally(context, photons, iteration, photons_taken)
-    if iteration.precedes_learning:
-        learning.weigh_noise(iteration, photons, stages.photon_noise.vertices, photons_taken, noise_samples)
+            findings.append(_read_findings(context, stages, learning, band, iteration, radii))
+    _learn(context, stages, learning, iteration, findings)
     yield
 
 
@@ -94,3 +85,25 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     radii = learning.radii_for(iteration, listed)
     estimator.begin(context.settings, stages.photons.stored(context, iteration, listed, radii), iteration)
     return radii
+
+
+def _read_findings(
+    context: StageContext, stages: StageSet, learning: Learning, band: Band, iteration: Iteration, radii: Radii
+) -> BandFindings:
+    """What a band tells of photons; nothing needs its radiances any more."""
+    sums, fraction = stages.density_estimator.sums, learning.photon_fraction(iteration)
+    taken = sums.photons_taken(band.pixel_count)
+    stages.caustic_radii.narrow(sums, band, iteration, radii, fraction, context.timers)
+    if not learning.weighs_noise:
+        return BandFindings(taken)
+    gather, importons = stages.final_gather, stages.importons
+    return BandFindings(taken, stages.photon_noise.sample(context, importons, gather, sums, band, iteration, radii))
+
+
+def _learn(
+    context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration, findings: list[BandFindings]
+) -> None:
+    if iteration.is_tallied:
+        learning.tally(context, stages.photons, findings)
+    if iteration.precedes_learning and learning.weighs_noise:
+        learning.weigh_noise(iteration, stages.photons, stages.photon_noise.vertices, findings)

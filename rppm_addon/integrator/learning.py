@@ -2,6 +2,7 @@
 """What iterations learn for those that come: how wide the radii have to be, and where photons are sent."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -37,6 +38,16 @@ _LEAST_UNCOVERED = 0.02
 
 _PHOTONS_OF_DISKS, _FEWEST_OF_DISKS = 0.25, 1 << 11
 """Photons a pixel, and at all, with which the wide radius holds the expected number: of fewer it holds fewer."""
+
+
+@dataclass(frozen=True)
+class BandFindings:
+    """What a band of an iteration that is learned from tells of photons."""
+
+    photons_taken: np.ndarray
+    """(pixels, 2): SplatSums.photons_taken."""
+    noise_samples: np.ndarray | None = None
+    """PhotonNoise.sample, where the noise is weighed."""
 
 
 def may_share_world_light(context: StageContext) -> bool:
@@ -104,15 +115,15 @@ class Learning:
         self,
         context: StageContext,
         photons: Photons,
-        iteration: Iteration,
-        photons_taken: list[np.ndarray],
+        findings: list[BandFindings],
     ) -> None:
-        """Count which photons of an iteration contributed; ``photons_taken``: SplatSums', by band, or none."""
+        """Count which photons of an iteration contributed; ``findings``: by band, where it is learned from."""
         with context.timers.stage("learning"):
             context.lights.tally(photons.stored_blocks, photons.slots)
             self.diffused_photons_found = None
-            if photons_taken:
-                counts = np.concatenate(photons_taken)[at_pixels(self.leaves_importon, *self._size), 0]
+            if findings:
+                taken = np.concatenate([band.photons_taken for band in findings])
+                counts = taken[at_pixels(self.leaves_importon, *self._size), 0]
                 self.diffused_photons_found = photons_found_by_ray(counts) if self._by_ray else photons_found(counts)
 
     @property
@@ -126,22 +137,17 @@ class Learning:
         iteration: Iteration,
         photons: Photons,
         vertices: int,
-        photons_taken: list[np.ndarray],
-        samples: list[np.ndarray],
+        findings: list[BandFindings],
     ) -> None:
-        """Choose how many photons the iterations after one that is learned from have.
-
-        vertices: of its camera paths; photons_taken and samples: SplatSums' and PhotonNoise's, by band.
-        """
-        if not self.weighs_noise:
-            return
-        found = NoiseSamples.of(np.concatenate(samples))
+        """Choose how many photons the iterations after one that is learned from have; ``vertices``: of its camera
+        paths."""
+        found = NoiseSamples.of(np.concatenate([known(band.noise_samples) for band in findings]))
         if self.rest is None:
             self.photon_noise = self.photon_noise.with_first(found)
         else:
             self.photon_noise = self.photon_noise.with_next(iteration.photon_count, found, self.rest)
         self.rest = found.rest.astype(np.float32)
-        pairs = sum(int(taken.sum(dtype=np.int64)) for taken in photons_taken)
+        pairs = sum(int(band.photons_taken.sum(dtype=np.int64)) for band in findings)
         each = photon_cost(iteration.photon_count, photons.count_segments(), pairs)
         paths = camera_cost(vertices, iteration.shadow_rays)
         later = self.photon_noise.best_photons(self.photon_counts.first, each, paths)

@@ -27,7 +27,9 @@ def many_photons(**settings: object) -> Scene:
     return dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, **values))
 
 
-@pytest.mark.parametrize(("roulette", "fraction", "held"), [(0, 1.0, 1.0), (7, 1.0, 1.0), (0, 0.5, 0.5), (0, 0.1, 0.25)])
+@pytest.mark.parametrize(
+    ("roulette", "fraction", "held"), [(0, 1.0, 1.0), (7, 1.0, 1.0), (0, 0.5, 0.5), (0, 0.1, 0.25)]
+)
 def test_disks_shrink_to_what_they_should_hold(context, library, roulette, fraction, held, monkeypatch):
     """The closed form, band by band and iteration by iteration; Eq. 2's shrinkage is no reason to shrink more."""
     pixels = 40

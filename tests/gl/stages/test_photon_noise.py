@@ -122,7 +122,10 @@ def test_light_behind_glass_that_the_next_frame_turns_on_is_found(mapper, other_
     mapper.update(lit)
     found = run_until(mapper, LEARNING_ITERATIONS + 1)
     assert found.photon_counts.latest > 4 * counts.latest
-    assert sum(photons for name, photons in mapper.source_photons.items() if "in glass" in name) > 0.3 * found.photon_counts.latest
+    assert (
+        sum(photons for name, photons in mapper.source_photons.items() if "in glass" in name)
+        > 0.3 * found.photon_counts.latest
+    )
     other_mapper.build(lit)
     assert_same_state(run_until(other_mapper, LEARNING_ITERATIONS + 1), found)
     brought = found.radiance[..., :3].mean() - before.radiance[..., :3].mean()
@@ -136,9 +139,7 @@ def test_light_behind_glass_that_the_next_frame_turns_on_is_found(mapper, other_
 def swinging(frame: int, seed: int, photons: int) -> Scene:
     """A lamp in glass that grows brighter, so that frames have other numbers of photons, over a ball that rises."""
     scene = lamp_in_glass(floor_and_ball(40, photons=photons, seed=seed), 0.01 * 1.25**frame)
-    scene.instances[1] = dataclasses.replace(
-        scene.instances[1], matrix=scenes.placed(0.0, 0.002 * frame, -0.6, 0.3)
-    )
+    scene.instances[1] = dataclasses.replace(scene.instances[1], matrix=scenes.placed(0.0, 0.002 * frame, -0.6, 0.3))
     return scene
 
 

@@ -81,8 +81,8 @@ def test_variances_are_those_of_the_samples():
         noise = noise.with_next(photons, found, before.rest)
         before = found
     luminance = (mean + 1.0) ** 2 + 0.01
-    # Of squares of n normal numbers the mean has a relative deviation of sqrt(2 / n); besides, the worst thousandth, each
-    # ten times the mean or more, is left out, and the luminance is that of 25 pixels with a spread of .11 relative each.
+    # Of squares of n normal numbers the mean has a relative deviation of sqrt(2 / n); besides, the worst thousandth,
+    # each ten times the mean or more, is left out, and the luminance is that of 25 pixels, each with a spread of .11.
     tolerance = 4.0 * np.sqrt(2.0 / (4 * SIDE**2)) + 0.015
     assert noise.pairs == 4
     assert noise.photon_sum / noise.photons == pytest.approx(photons / photons_in_disk / luminance, rel=tolerance)
