@@ -14,7 +14,7 @@ from .stages.stage_set import StageSet
 
 def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:
     """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
-    photons, importons, camera_hits = stages.photons, stages.importons, stages.camera_hits
+    importons, camera_hits = stages.importons, stages.camera_hits
     estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
     yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
