@@ -36,6 +36,8 @@ _LEAST_UNCOVERED = 0.02
 """Of those that leave: where more pass portals, shadow rays find nearly all of it there."""
 
 
+_WEIGHED_AT = 64
+"""The iteration with whose radii the noise of photons is weighed."""
 _PHOTONS_OF_DISKS, _FEWEST_OF_DISKS = 0.25, 1 << 11
 """Photons a pixel, and at all, with which the wide radius holds the expected number: of fewer it holds fewer."""
 
@@ -145,7 +147,8 @@ class Learning:
         if self.rest is None:
             self.photon_noise = self.photon_noise.with_first(found)
         else:
-            self.photon_noise = self.photon_noise.with_next(iteration.photon_count, found, self.rest)
+            growth = (shrinkage(iteration.number, self._alpha) / shrinkage(_WEIGHED_AT, self._alpha)) ** 2
+            self.photon_noise = self.photon_noise.with_next(iteration.photon_count, found, self.rest, growth)
         self.rest = found.rest.astype(np.float32)
         pairs = sum(int(band.photons_taken.sum(dtype=np.int64)) for band in findings)
         each = photon_cost(iteration.photon_count, photons.count_segments(), pairs)

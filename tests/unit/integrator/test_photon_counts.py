@@ -6,6 +6,7 @@ import pytest
 
 from rppm_addon.integrator.common.iteration import learns_after
 from rppm_addon.integrator.common.photon_counts import (
+    EVENNESS,
     NoiseSamples,
     PhotonCounts,
     PhotonNoise,
@@ -39,7 +40,7 @@ def test_the_variance_after_a_given_time_is_least(photon_variance, rest_variance
     numbers = np.arange(1024, FIRST + 1)
 
     def product(photons: np.ndarray | int) -> np.ndarray:
-        return (photon_variance / photons + rest_variance) * (photons * each + paths)
+        return (photon_variance / photons + rest_variance / EVENNESS) * (photons * each + paths)
 
     least = product(numbers).min()
     found = [noise.best_photons(FIRST, each, paths * factor) for factor in (1.0, 1.01)]
@@ -78,14 +79,14 @@ def test_variances_are_those_of_the_samples():
     noise, before = PhotonNoise().with_first(samples()), samples()
     for _ in range(4):
         found = samples()
-        noise = noise.with_next(photons, found, before.rest)
+        noise = noise.with_next(photons, found, before.rest, 3.0)
         before = found
     luminance = (mean + 1.0) ** 2 + 0.01
     # Of squares of n normal numbers the mean has a relative deviation of sqrt(2 / n); besides, the worst thousandth,
     # each ten times the mean or more, is left out, and the luminance is that of 25 pixels, each with a spread of .11.
     tolerance = 4.0 * np.sqrt(2.0 / (4 * SIDE**2)) + 0.015
     assert noise.pairs == 4
-    assert noise.photon_sum / noise.photons == pytest.approx(photons / photons_in_disk / luminance, rel=tolerance)
+    assert noise.photon_sum / noise.photons == pytest.approx(3.0 * photons / photons_in_disk / luminance, rel=tolerance)
     assert noise.rest_sum / noise.pairs == pytest.approx(spread**2 / luminance, rel=1.5 * tolerance)
 
 
@@ -100,7 +101,7 @@ def test_what_photons_add_to_the_rest_is_theirs():
         return NoiseSamples(rest, rest, signed, signed)
 
     first = samples()
-    noise = PhotonNoise().with_first(first).with_next(1000, samples(), first.rest)
+    noise = PhotonNoise().with_first(first).with_next(1000, samples(), first.rest, 1.0)
     assert noise.photon_sum / noise.photons == pytest.approx(1000 * spread**2 / 4.01, rel=0.1)
     assert noise.rest_sum < 0.05 * spread**2 / 4.01
 
@@ -109,7 +110,7 @@ def test_pixels_that_are_not_finite_tell_nothing():
     values = np.ones((8, 8, 4), np.float32)
     values[3, 4] = np.nan, np.inf, -np.inf, 1.0
     samples = NoiseSamples.of(values)
-    noise = PhotonNoise().with_first(samples).with_next(100, samples, samples.rest)
+    noise = PhotonNoise().with_first(samples).with_next(100, samples, samples.rest, 1.0)
     assert np.isfinite([noise.photon_sum, noise.rest_sum, noise.rest_photon_variance]).all()
     assert (samples.signed[0, 0], samples.signed[3, 4]) == (2.0, 1.0)
 
