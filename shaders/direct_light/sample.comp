@@ -180,8 +180,8 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
                              out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
-    vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
-                  scrambled_sobol(parameters.light_sample, pcg4d(choices)));
+    // Of the light, then of a light deep in the tree, and of the point on the light: even together.
+    vec4 u = scrambled_sobol4(parameters.light_sample, choices).xwyz;
     vec3 facing = lit_normal(closure);
     // An even environment is left to the gathering ray.
     float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;

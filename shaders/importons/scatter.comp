@@ -244,16 +244,15 @@ PathShares limited_shares(PathShares shares, uint bounces) {
 
 const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
 
-// The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
+// The next ray of a path that survives. choices: numbers for the lobe, a place on its disk, and what the lobe does.
 void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all, bool gathers, float radius,
-           float disk, uvec4 choices, float u, uint history) {
+           float disk, vec4 choices, uint history) {
     vec3 viewer = -ray.direction;
     float gathering = gathers ? sum(all.stored) : 0.0, total = all.total;
     if (total <= 0.0) return;
-    float survival = path_survival(total);
+    float survival = path_survival(total), u = choices.x, u_event = choices.w;
     if (u >= survival) return;
-    vec2 on_disk = sample_disk(scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
-    float u_event = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)).x;
+    vec2 on_disk = sample_disk(choices.yz);
     u *= total / survival;
     bool sets_out = u < gathering, gathered = (path.flags & PATH_GATHERED) != 0u;
     if (sets_out) {
@@ -348,7 +347,8 @@ void main() {
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));
-    vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
+    vec4 u_lobe = scrambled_sobol4(parameters.iteration - 1u, choices);
+    float u_importon = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)).x;
     uint bounces = bounces_of(path.depth);
     if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
@@ -361,8 +361,8 @@ void main() {
     }
     float least_radius = gathered ? most : radius;
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
-                   bounces > parameters.camera_bounces ? 0.0 : most, u_lobe.y,
+                   bounces > parameters.camera_bounces ? 0.0 : most, u_importon,
                    (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
-    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), choices,
-          u_lobe.x, history);
+    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe,
+          history);
 }
