@@ -47,8 +47,8 @@ uvec2 sobol_third_fourth_reversed(uint index) {
     return bits;
 }
 
-// Point `index` of a four-dimensional set, whose first two numbers are those of scrambled_sobol. Of the points whose third
-// number lies in some interval, such as that of a lobe or of a light, the others are evenly spread as well.
+// Point `index` of a four-dimensional set, whose first two numbers are those of scrambled_sobol. Of the points whose
+// third number lies in some interval, such as that of a lobe or of a light, the others are evenly spread as well.
 vec4 scrambled_sobol4(uint index, uvec4 seed) {
     uint shuffled = owen_scramble(index, seed.x);
     uvec2 more = sobol_third_fourth_reversed(shuffled);

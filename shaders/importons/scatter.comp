@@ -163,6 +163,12 @@ vec4 seen_surface(CameraPath path, ScatterPoint from, Closure closure) {
     return seen;
 }
 
+// Radiance of the light objects on a path's way.
+vec3 passed_radiance(CameraPath path, ScatterPoint from, Ray ray, float way) {
+    if (!path_sees_lights(path, parameters.next_event) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
+    return visible_light(from, ray, way, camera_ray_kind(path.flags), path_absorption(path.flags));
+}
+
 // What the media on a path's way weaken, and what they shine themselves, which surfaces that gather find as well.
 // Returns the throughput before the way.
 vec3 pass_media(uint index, inout CameraPath path, float way) {
@@ -251,6 +257,19 @@ PathShares limited_shares(PathShares shares, uint bounces, bool is_seen) {
     return PathShares(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight, path_survival(straight, is_seen));
 }
 
+// What a path remembers of how it goes on.
+void take_event(uint index, inout CameraPath path, Closure closure, Event event, bool gathers) {
+    path.flags = event.flags;
+    if (event.scatter != SCATTER_NONE) path.depth += ONE_BOUNCE;
+    else if (counts_as_transparent(closure)) path.depth += ONE_TRANSPARENT;
+    path.straight_length = event.scatter == SCATTER_NONE ? path.straight_length + closure.distance : 0.0;
+    path.scatter_pdf = event.pdf;
+    if (event.scatter != SCATTER_NONE && event.pdf > 0.0) {
+        path.lit_normal = closure.shading_normal;
+        path.lit_from = pack_lit_from(light_set_at(closure.triangle), lit_from_behind(index, closure), gathers);
+    }
+}
+
 const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
 
 // The next ray of a path that survives. choices: numbers for the lobe, a place on its disk, and what the lobe does.
@@ -282,15 +301,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter), path.depth);
-    path.flags = event.flags;
-    if (event.scatter != SCATTER_NONE) path.depth += ONE_BOUNCE;
-    else if (counts_as_transparent(closure)) path.depth += ONE_TRANSPARENT;
-    path.straight_length = event.scatter == SCATTER_NONE ? path.straight_length + closure.distance : 0.0;
-    path.scatter_pdf = event.pdf;
-    if (event.scatter != SCATTER_NONE && event.pdf > 0.0) {
-        path.lit_normal = closure.shading_normal;
-        path.lit_from = pack_lit_from(light_set_at(closure.triangle), lit_from_behind(index, closure), gathers);
-    }
+    take_event(index, path, closure, event, gathers);
     path.throughput *= event.weight * (total / (event.probability * survival));
     // What a gathering ray finds serves neighbors, of other wavelengths: it begins white.
     if (sets_out) path.flags &= ~(PATH_CAUSTIC | PATH_DISPERSED);
@@ -339,19 +350,15 @@ void main() {
         view = view_environment(start, ray);
     }
     float way = hit ? closures[index].distance : INFINITY_DISTANCE;
-    vec3 departing = pass_media(index, path, way), lights_passed = vec3(0.0);
+    vec3 departing = pass_media(index, path, way);
     ScatterPoint from = scatter_point(path, ray, start);
-    if (path_sees_lights(path, parameters.next_event) && (path.flags & PATH_LIGHTS_FOUND) == 0u)
-        lights_passed = visible_light(from, ray, way, camera_ray_kind(path.flags), path_absorption(path.flags));
+    vec3 lights_passed = passed_radiance(path, from, ray, way);
     vec4 seen = vec4(departing * lights_passed, 0.0);
     vec3 weight = gathered ? gathering_vertices[index].weight : vec3(1.0);
-    if (gathered && !hit) {
-        radiances[index].rgb += weight * seen.rgb;
-        end_gathering_ray(index, path, world, view);
-        return;
-    }
     if (!hit) {
-        radiances[index] += seen + seen_environment(path, world, view, largest(lights_passed) <= 0.0);
+        if (!gathered) seen += seen_environment(path, world, view, largest(lights_passed) <= 0.0);
+        radiances[index] += vec4(weight, 1.0) * seen;
+        if (gathered) end_gathering_ray(index, path, world, view);
         return;
     }
     Closure closure = closures[index];

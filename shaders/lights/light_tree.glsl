@@ -239,8 +239,8 @@ void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, Sc
 }
 
 // The light objects that a ray passes between two distances; they hide nothing, and the camera sees all. from: in the
-// light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one loop,
-// since drivers without calls have the code of a light as often as it stands here.
+// light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one
+// loop, since drivers without calls have the code of a light as often as it stands here.
 PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u, vec3 absorption) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
