@@ -3,7 +3,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
@@ -40,10 +40,17 @@ def all_programs() -> list[Program]:
     return list(_programs(checked, vertices))
 
 
+def _words(defines: Mapping[str, object]) -> list[str]:
+    """What tells variants of a file apart: the names of defines, and of files that they include the folder."""
+    return [
+        PurePosixPath(str(value)).parent.name if "/" in str(value) else name for name, value in sorted(defines.items())
+    ]
+
+
 def _programs(checked: list[Variant], vertices: dict[PurePosixPath, Variant]) -> Iterator[Program]:
     for variant in checked:
         path = PurePosixPath(variant.name)
-        words = [variant.name, *sorted(variant.defines), *([variant.kinds] if variant.kinds else [])]
+        words = [variant.name, *_words(variant.defines), *([variant.kinds] if variant.kinds else [])]
         if path.suffix == ".comp":
             yield Program(" ".join(words), {"comp": variant.expand()})
         elif path.suffix == ".frag":

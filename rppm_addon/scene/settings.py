@@ -67,6 +67,17 @@ class AccelerationStructure(enum.Enum):
     """A bounding volume hierarchy."""
 
 
+class FirstCameraHits(enum.Enum):
+    """How the first hits of cameras without depth of field are found: nearly the same ones, at different speed."""
+
+    AUTOMATIC = "AUTOMATIC"
+    """Traced where the processor stands in for a GPU, otherwise rasterized."""
+    RASTERIZED = "RASTERIZED"
+    """The camera rasterizes what it sees, as in the paper."""
+    TRACED = "TRACED"
+    """Through the acceleration structure, like all later segments."""
+
+
 class FirstPhotonHits(enum.Enum):
     """How the first hits of photons are found: the same ones, at different speed."""
 
@@ -307,6 +318,19 @@ class RenderSettings:
                 "Photon Grid",
                 "Sort photons into grids of cells, and look for them in the cells around",
             ),
+        },
+    )
+    first_camera_hits: FirstCameraHits = setting(
+        FirstCameraHits.AUTOMATIC,
+        "First Camera Hits",
+        "How it is found what cameras without depth of field see: pictures differ by rounding at edges only",
+        choices={
+            FirstCameraHits.AUTOMATIC: (
+                "Automatic",
+                "Trace where the processor stands in for a GPU, otherwise rasterize",
+            ),
+            FirstCameraHits.RASTERIZED: ("Rasterized", "Rasterize what the camera sees, as the paper does"),
+            FirstCameraHits.TRACED: ("Traced", "Trace rays, as for all later hits"),
         },
     )
     first_photon_hits: FirstPhotonHits = setting(

@@ -53,22 +53,21 @@ bool can_be_lit(uint index, Closure closure, bool gathered) {
     return lit;
 }
 
-// Lights are found by shadow rays. Light of the environment is found by gathering rays as well, and specular lobes
+// Lights are found by shadow rays. Those that gathering rays share are found by these as well, and specular lobes
 // are followed to all lights with extent: the power heuristic weights both ways, part by part of the closure.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
-// choice of the light included. by_rays: what photons leave to rays, of the parts that store them.
-vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares shares, bool gathered, bool gathers,
-                      vec3 wo, vec3 wi, bool front, uint visibility, bool environment, float light_pdf, float by_rays,
-                      out Parts parts) {
+// choice of the light included. is_shared: whether gathering rays find the light. by_rays: what photons leave to rays,
+// of the parts that store them.
+vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares shares, bool gathered, vec3 wo, vec3 wi,
+                      bool front, uint visibility, bool is_shared, float light_pdf, float by_rays, out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front)
                                                  : vec3(0.0);
-    if (gathers && environment) {
+    if (is_shared) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
-        float probability = part * path_survival(shares.total) / max(shares.total, 1e-20);
-        value *= power_heuristic(light_pdf, probability * cosine / PI);
+        value *= power_heuristic(light_pdf, part_probability(part, shares) * cosine / PI);
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < closure_lobes(closure); ++k) {
@@ -79,9 +78,9 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
-        if (light_pdf > 0.0 && (specular || (gathers && environment)))
-            weight *= power_heuristic(light_pdf, lobe_probability(specular ? shares.specular : shares.stored,
-                                                                  shares.total, k) * scattered.pdf);
+        if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > SMOOTHEST_LIT)))
+            weight *= power_heuristic(light_pdf, part_probability((specular ? shares.specular : shares.stored)[1 + k],
+                                                                  shares) * scattered.pdf);
         vec3 part = weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
         value += part;
         uint scatter = lobe_scatter(lobe.kind, !front);
@@ -89,13 +88,6 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         else if (scatter == SCATTER_TRANSMISSION) parts.transmission += part;
     }
     return value;
-}
-
-bool lit_from_behind(uint index, Closure closure) {
-    bool transmits = largest(closure.translucent) > 0.0;
-    for (int k = 0; k < closure_lobes(closure); ++k)
-        transmits = transmits || lobe_transmits(stored_lobe(index, k).kind);
-    return transmits;
 }
 
 // Light that arrives along a direction if nothing is in the way.
@@ -138,8 +130,9 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, disk, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
-        PassedLights passed = passed_lights(closure.position, sampled.direction, vec2(0.0, INFINITY_DISTANCE),
-                                            RAY_GLOSSY, 0.0, light_set, candidates.u, path_absorption(flags));
+        ScatterPoint from = ScatterPoint(LitPoint(closure.position, vec3(0.0), false, light_set), 0.0, 0.0, false, 0u);
+        PassedLights passed = passed_lights(from, sampled.direction, vec2(0.0, INFINITY_DISTANCE), RAY_GLOSSY,
+                                            candidates.u, path_absorption(flags));
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                        * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
@@ -180,18 +173,12 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
                              out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
-    vec4 u = vec4(scrambled_sobol(parameters.light_sample, choices),
-                  scrambled_sobol(parameters.light_sample, pcg4d(choices)));
+    // Of the light, then of a light deep in the tree, and of the point on the light: even together.
+    vec4 u = scrambled_sobol4(parameters.light_sample, choices).zwxy;
     vec3 facing = lit_normal(closure);
-    // An even environment is left to the gathering ray.
-    float environment_irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
-#ifdef PORTALS
-    // Through portals shadow rays find it as well.
-    environment_irradiance = portal_irradiance(closure.position, environment_irradiance);
-#endif
     LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
                                                   light_set_at(closure.triangle)),
-                                         environment_irradiance, u.x, u.y);
+                                         chosen_environment_irradiance(closure.position, gathers), u.x, u.y);
     Light light = lights[choice.light];
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     float side = dot(facing, sampled.direction);
@@ -200,13 +187,16 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     bool arrives = choice.probability > 0.0 && !too_far && largest(sampled.weight) > 0.0
                 && sampled.triangle != closure.triangle && side != 0.0;
     if (!arrives) return NOTHING_ARRIVES;
-    // Weights take the densities that rays which meet a light can tell as well, whatever the choice at the point.
-    float light_pdf = sampled.pdf * light.selection_probability;
-    if (light.kind == LIGHT_MESH) light_pdf *= emissive_triangles[choice.triangle].share;
     bool environment = light.kind == LIGHT_WORLD;
+    // Of the environment, photons have to know the density as well, for which the choice at the point is none.
+    float light_pdf = sampled.pdf * (environment ? light.selection_probability : choice.probability);
+    bool is_plain = sampled.triangle == NO_TRIANGLE || emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT == 0u;
+    bool leaves = (dot(unpack_unit_vector(closure.geometric_normal), sampled.direction) > 0.0) == (side > 0.0);
+    bool is_shared = gathers && leaves && light_pdf > 0.0
+                  && (environment || (!gathered && is_plain && is_shared_light(light, bounces_of(path.depth))));
     float by_rays = environment ? left_to_rays(closure.position, sampled.direction, radius) : 1.0;
-    vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, gathers, wo, sampled.direction,
-                                      side > 0.0, light.flags, environment, light_pdf, by_rays, parts);
+    vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, wo, sampled.direction, side > 0.0,
+                                      light.flags, is_shared, light_pdf, by_rays, parts);
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
     uint beyond = path.flags;
     if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
@@ -250,7 +240,8 @@ void main() {
     fiber_seed = choices.w + 2654435769u * parameters.light_sample;
 #endif
     vec3 viewer = -ray.direction;
-    PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers);
+    PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers,
+                                    (flags & PATH_STRAIGHT) != 0u);
     Parts parts;  // shares of it
     Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered),
                                             closure, throughput, shares, viewer, gathered, gathers, choices, parts);

@@ -13,16 +13,22 @@ layout(std430, binding = 2) writeonly buffer Rays;
 layout(std430, binding = 3) writeonly buffer Hits;
 layout(std430, binding = 4) writeonly buffer CameraPaths;
 #include "gbuffer/camera_ray.glsl"
+#include "common/intersection.glsl"
 
-Hit intersect_plane(Ray ray, uint triangle) {
-    vec3 v0 = triangle_vertices[3u * triangle].xyz;
-    vec3 e1 = triangle_vertices[3u * triangle + 1u].xyz - v0, e2 = triangle_vertices[3u * triangle + 2u].xyz - v0;
+// By the test of rays that are traced, so that both ways give the same bits. Rasterization may round a pixel onto a
+// triangle that its ray just misses: there the hit is the nearest point of the triangle.
+Hit seen_hit(Ray ray, uint triangle) {
+    vec3 v0 = triangle_vertices[3u * triangle].xyz, v1 = triangle_vertices[3u * triangle + 1u].xyz,
+         v2 = triangle_vertices[3u * triangle + 2u].xyz;
+    Hit hit = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
+    intersect_triangle(make_watertight_ray(ray.origin, ray.direction), triangle, v0, v1, v2, hit);
+    if (hit.triangle != NO_TRIANGLE) return hit;
+    vec3 e1 = v1 - v0, e2 = v2 - v0;
     vec3 p = cross(ray.direction, e2);
     float determinant = dot(e1, p);
     vec3 s = ray.origin - v0;
     vec2 b = vec2(1.0 / 3.0);
     if (determinant != 0.0) b = vec2(dot(s, p), dot(ray.direction, cross(s, e1))) / determinant;
-    // Rasterization may round a pixel onto a triangle that its ray just misses.
     b = clamp(b, 0.0, 1.0);
     b /= max(1.0, b.x + b.y);
     return Hit(triangle, b.x, b.y, length(b.x * e1 + b.y * e2 - s));
@@ -36,6 +42,6 @@ void main() {
     vec2 visible = texelFetch(visibility, ivec2(index % camera.width, index / camera.width), 0).xy;
     uint number = uint(visible.x + 0.5) | (uint(visible.y + 0.5) << 16u);
     rays[index] = ray;
-    hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : intersect_plane(ray, number - 1u);
-    camera_paths[index] = CameraPath(vec3(1.0), 0.0, seen.passed, 0.0, sqrt(seen.area / PI), PATH_STRAIGHT, 0u);
+    hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : seen_hit(ray, number - 1u);
+    camera_paths[index] = CameraPath(vec3(1.0), 0.0, seen.passed, 0.0, sqrt(seen.area / PI), PATH_STRAIGHT, 0u, 0u, 0u);
 }

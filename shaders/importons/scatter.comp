@@ -35,6 +35,7 @@ layout(std430, binding = 15) readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 #include "importons/round_shapes.glsl"
 #include "importons/scattered_at.glsl"
+#include "importons/scatter_point.glsl"
 
 // What does not wait for the lobe is written first: beside one, processors have no registers for all of an importon.
 void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, vec4 shares, float least_radius,
@@ -138,19 +139,34 @@ vec4 seen_environment(CameraPath path, vec3 world, EnvironmentView view, bool ba
     return vec4(path.throughput * world * environment_weight(path, view), 0.0);
 }
 
-// Radiance and alpha of a surface that shines by itself or cuts a hole. start: where the ray was scattered.
-vec4 seen_surface(CameraPath path, vec3 start, Closure closure) {
+// Share that a ray has of the light of a surface that shadow rays from where it was scattered find as well.
+float emission_weight(ScatterPoint from, uint triangle) {
+    if (!(from.pdf > 0.0)) return 1.0;
+    float pdf = emissive_triangle_pdf(from.lit.position, triangle);
+    uint leaf = uint(triangle_vertices[3u * triangle + 1u].w);
+    if (pdf > 0.0 && leaf > 0u)
+        pdf *= light_probability(from.lit, from.environment_irradiance, KIND_TRIANGLES, leaf);
+    else pdf = 0.0;
+    return scatter_mis_weight(from.pdf, pdf);
+}
+
+// Radiance and alpha of a surface that shines by itself or cuts a hole.
+vec4 seen_surface(CameraPath path, ScatterPoint from, Closure closure) {
     vec4 seen = vec4(0.0);
-    bool found = (path.flags & PATH_LIGHTS_FOUND) != 0u && (emitter_traits(closure.triangle) & EMITTER_REFLECTED) != 0u;
-    if (largest(closure.emission) > 0.0 && (path.flags & PATH_GATHERED) == 0u && !found) {
-        float weight = 1.0;
-        if (path.scatter_pdf > 0.0)
-            weight = scatter_mis_weight(path.scatter_pdf, emissive_triangle_pdf(start, closure.triangle));
-        seen.rgb = path.throughput * closure.emission * weight;
-    }
+    uint traits = emitter_traits(closure.triangle);
+    bool is_found = (path.flags & PATH_LIGHTS_FOUND) != 0u && (traits & EMITTER_REFLECTED) != 0u;
+    bool is_left = from.gathers && (parameters.gathers_lights == 0u || traits >> EMITTER_LINK_SHIFT != 0u);
+    if (largest(closure.emission) > 0.0 && path_sees_lights(path, parameters.next_event) && !is_found && !is_left)
+        seen.rgb = path.throughput * closure.emission * emission_weight(from, closure.triangle);
     if ((path.flags & PATH_STRAIGHT) != 0u)
         seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return seen;
+}
+
+// Radiance of the light objects on a path's way.
+vec3 passed_radiance(CameraPath path, ScatterPoint from, Ray ray, float way) {
+    if (!path_sees_lights(path, parameters.next_event) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
+    return visible_light(from, ray, way, camera_ray_kind(path.flags), path_absorption(path.flags));
 }
 
 // What the media on a path's way weaken, and what they shine themselves, which surfaces that gather find as well.
@@ -207,7 +223,7 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
 
 // u: behind the share of what is no lobe.
 Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event,
-                 vec4 shares, float total) {
+                 vec4 shares, PathShares all) {
     Event event;
     int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
     event.probability = shares[1 + chosen];
@@ -216,8 +232,7 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
     if (parameters.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > SMOOTHEST_LIT)
-        event.pdf = lobe_probability(shares, total, chosen)
-                      * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
+        event.pdf = part_probability(event.probability, all) * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     if (lobe_is_hair(lobe.kind))
@@ -225,7 +240,7 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     event.transmitted = sampled.transmitted;
     event.scatter = lobe_scatter(lobe.kind, sampled.transmitted);
     bool lights_found = parameters.next_event != 0u && !sampled.transmitted
-                     && looks_for_reflected_lights(lobe, shares, total, chosen, viewer,
+                     && looks_for_reflected_lights(lobe, shares, all.total, chosen, viewer,
                                                    min(SMOOTHEST_LIT, parameters.specular_alpha));
     event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND
                                   | PATH_SEEN_THROUGH))
@@ -236,24 +251,36 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
 }
 
 // Behind the last bounce a path only comes through transparent surfaces.
-PathShares limited_shares(PathShares shares, uint bounces) {
+PathShares limited_shares(PathShares shares, uint bounces, bool is_seen) {
     float straight = shares.specular.x;
     if (bounces <= parameters.camera_bounces) return shares;
-    return PathShares(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight);
+    return PathShares(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight, path_survival(straight, is_seen));
+}
+
+// What a path remembers of how it goes on.
+void take_event(uint index, inout CameraPath path, Closure closure, Event event, bool gathers) {
+    path.flags = event.flags;
+    if (event.scatter != SCATTER_NONE) path.depth += ONE_BOUNCE;
+    else if (counts_as_transparent(closure)) path.depth += ONE_TRANSPARENT;
+    path.straight_length = event.scatter == SCATTER_NONE ? path.straight_length + closure.distance : 0.0;
+    path.scatter_pdf = event.pdf;
+    if (event.scatter != SCATTER_NONE && event.pdf > 0.0) {
+        path.lit_normal = closure.shading_normal;
+        path.lit_from = pack_lit_from(light_set_at(closure.triangle), lit_from_behind(index, closure), gathers);
+    }
 }
 
 const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
 
-// The next ray of a path that survives. choices: its random seeds; u_lobe: a number that chooses.
+// The next ray of a path that survives. choices: numbers for the lobe, a place on its disk, and what the lobe does.
 void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all, bool gathers, float radius,
-           float disk, uvec4 choices, float u, uint history) {
+           float disk, vec4 choices, uint history) {
     vec3 viewer = -ray.direction;
     float gathering = gathers ? sum(all.stored) : 0.0, total = all.total;
     if (total <= 0.0) return;
-    float survival = path_survival(total);
+    float survival = all.survival, u = choices.x, u_event = choices.w;
     if (u >= survival) return;
-    vec2 on_disk = sample_disk(scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
-    float u_event = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices + 1u)).x;
+    vec2 on_disk = sample_disk(choices.yz);
     u *= total / survival;
     bool sets_out = u < gathering, gathered = (path.flags & PATH_GATHERED) != 0u;
     if (sets_out) {
@@ -265,7 +292,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     vec3 found_weight = vec3(1.0);
     // Lobes first, since they need most registers: what else there is would be kept beside.
     if (!diffuse && !(u < shares.x))
-        event = lobe_event(index, path, closure, viewer, u - shares.x, on_disk, u_event, shares, total);
+        event = lobe_event(index, path, closure, viewer, u - shares.x, on_disk, u_event, shares, all);
     else if (diffuse) {
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
@@ -274,11 +301,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter), path.depth);
-    path.flags = event.flags;
-    if (event.scatter != SCATTER_NONE) path.depth += ONE_BOUNCE;
-    else if (counts_as_transparent(closure)) path.depth += ONE_TRANSPARENT;
-    path.straight_length = event.scatter == SCATTER_NONE ? path.straight_length + closure.distance : 0.0;
-    path.scatter_pdf = event.pdf;
+    take_event(index, path, closure, event, gathers);
     path.throughput *= event.weight * (total / (event.probability * survival));
     // What a gathering ray finds serves neighbors, of other wavelengths: it begins white.
     if (sets_out) path.flags &= ~(PATH_CAUSTIC | PATH_DISPERSED);
@@ -328,41 +351,40 @@ void main() {
     }
     float way = hit ? closures[index].distance : INFINITY_DISTANCE;
     vec3 departing = pass_media(index, path, way);
-    if (gathered && !hit) {
-        end_gathering_ray(index, path, world, view);
-        return;
-    }
-    vec3 lights_passed = vec3(0.0);
-    if (!gathered && (path.flags & PATH_LIGHTS_FOUND) == 0u)
-        lights_passed = visible_light(start, ray, way, camera_ray_kind(path.flags), path.scatter_pdf,
-                                      path_absorption(path.flags));
+    ScatterPoint from = scatter_point(path, ray, start);
+    vec3 lights_passed = passed_radiance(path, from, ray, way);
     vec4 seen = vec4(departing * lights_passed, 0.0);
+    vec3 weight = gathered ? gathering_vertices[index].weight : vec3(1.0);
     if (!hit) {
-        radiances[index] += seen + seen_environment(path, world, view, largest(lights_passed) <= 0.0);
+        if (!gathered) seen += seen_environment(path, world, view, largest(lights_passed) <= 0.0);
+        radiances[index] += vec4(weight, 1.0) * seen;
+        if (gathered) end_gathering_ray(index, path, world, view);
         return;
     }
     Closure closure = closures[index];
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
-    radiances[index] += seen + seen_surface(path, start, closure);
+    radiances[index] += vec4(weight, 1.0) * (seen + seen_surface(path, from, closure));
     float radius = vertex_radius(path, ray.direction, closure), most = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
     uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
                                 STAGE_IMPORTONS << 24u));
-    vec2 u_lobe = scrambled_sobol(parameters.iteration - 1u, choices);
+    vec4 u_lobe = scrambled_sobol4(parameters.iteration - 1u, choices).zxyw;
+    float u_importon = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)).x;
     uint bounces = bounces_of(path.depth);
+    bool is_seen = (path.flags & PATH_STRAIGHT) != 0u;
     if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
                 && path_gathers(path.flags, length_to_gather_by(closure), parameters.gathers_again_below);
     PathShares shares = limited_shares(path_shares(index, closure, path.throughput, -ray.direction,
-                                                   parameters.specular_alpha, gathers), bounces);
+                                                   parameters.specular_alpha, gathers, is_seen), bounces, is_seen);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
     }
     float least_radius = gathered ? most : radius;
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
-                   bounces > parameters.camera_bounces ? 0.0 : most, u_lobe.y,
+                   bounces > parameters.camera_bounces ? 0.0 : most, u_importon,
                    (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
-    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), choices,
-          u_lobe.x, history);
+    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe,
+          history);
 }

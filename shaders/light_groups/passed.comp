@@ -31,6 +31,7 @@ void add_passed_light(uint light, vec3 radiance) {
 }
 #define TELL_OF_PASSED_LIGHT add_passed_light
 #include "lights/light_tree.glsl"
+#include "importons/scatter_point.glsl"
 
 void main() {
     path_index = living_path();
@@ -38,12 +39,13 @@ void main() {
     Ray ray = rays[path_index];
     vec3 passed = vec3(0.0);
     CameraPath path = camera_paths[path_index];
-    if (ray.maximum_distance > 0.0 && (path.flags & (PATH_GATHERED | PATH_LIGHTS_FOUND)) == 0u) {
+    if (ray.maximum_distance > 0.0 && path_sees_lights(path, parameters.next_event)
+        && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
         path_throughput = path.throughput;
+        if ((path.flags & PATH_GATHERED) != 0u) path_throughput *= gathering_vertices[path_index].weight;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
-        passed = path_throughput * visible_light(scattered_at(path_index, path, ray), ray, distance,
-                                                 camera_ray_kind(path.flags), path.scatter_pdf,
-                                                 path_absorption(path.flags));
+        passed = path_throughput * visible_light(scatter_point(path, ray, scattered_at(path_index, path, ray)), ray,
+                                                 distance, camera_ray_kind(path.flags), path_absorption(path.flags));
     }
     seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
 }

@@ -88,6 +88,21 @@ float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep
     return probability;
 }
 
+// Probability with which choose_leaf comes to the leaf that is node `leaf` of a tree.
+float leaf_probability(uint first, uint leaves, LitPoint point, uint leaf) {
+    float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(2u * leaves - 1u), 1));
+    for (int level = findMSB(leaf); level > 0; --level) {
+        uint node = leaf >> uint(level);
+        float low = node_importance(light_nodes[first + 2u * node], point),
+            high = node_importance(light_nodes[first + 2u * node + 1u], point);
+        if (!(low + high > 0.0)) return 0.0;
+        float low_probability = low / (low + high);
+        if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
+        probability *= ((leaf >> uint(level - 1)) & 1u) == 0u ? low_probability : 1.0 - low_probability;
+    }
+    return probability;
+}
+
 // Kinds of light that a choice is made among: the light objects' tree, the emissive triangles', the environment, and
 // each sun.
 const uint KIND_OBJECTS = 0u, KIND_TRIANGLES = 1u, KIND_ENVIRONMENT = 2u, KIND_FIRST_SUN = 3u;
@@ -99,6 +114,39 @@ float kind_importance(uint kind, LitPoint point, float environment_irradiance) {
     bool objects = kind == KIND_OBJECTS;
     return tree_importance(objects ? 0u : parameters.triangle_tree,
                            objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves, point);
+}
+
+// Of a kind among all: so many shine, and their importances come to a total.
+float kind_probability(float importance, float total, float shining) {
+    return (1.0 - EVEN_FRACTION_OF_KINDS) * importance / total + EVEN_FRACTION_OF_KINDS / shining;
+}
+
+// Irradiance that the environment counts for in the choice of a light, W/m^2. An even one is left to gathering rays.
+float chosen_environment_irradiance(vec3 position, bool gathers) {
+    float irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
+#ifdef PORTALS
+    // Through portals shadow rays find it as well.
+    irradiance = portal_irradiance(position, irradiance);
+#endif
+    return irradiance;
+}
+
+// Probability with which choose_light_at comes to a light that has a place in a tree, as that leaf, or to a sun.
+float light_probability(LitPoint point, float environment_irradiance, uint kind, uint leaf) {
+    float total = 0.0, shining = 0.0, own = 0.0;
+    for (uint other = 0u; other < KIND_FIRST_SUN + parameters.sun_count; ++other) {
+        float importance = kind_importance(other, point, environment_irradiance);
+        if (other == kind) own = importance;
+        total += importance;
+        shining += importance > 0.0 ? 1.0 : 0.0;
+    }
+    if (!(own > 0.0)) return 0.0;
+    float probability = kind_probability(own, total, shining);
+    if (kind >= KIND_FIRST_SUN) return probability;
+    bool objects = kind == KIND_OBJECTS;
+    return probability * leaf_probability(objects ? 0u : parameters.triangle_tree,
+                                          objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves,
+                                          point, leaf);
 }
 
 // environment_irradiance: what the environment counts for, W/m^2. u_deep takes over where u has been used up.
@@ -120,7 +168,7 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
         float importance = kind < 4u ? importances[kind]
                            : sun_importance(light_nodes[parameters.first_sun + kind - KIND_FIRST_SUN], point);
         if (!(importance > 0.0)) continue;
-        float probability = (1.0 - EVEN_FRACTION_OF_KINDS) * importance / total + EVEN_FRACTION_OF_KINDS / shining;
+        float probability = kind_probability(importance, total, shining);
         chosen = kind;
         choice.probability = probability;
         if (u < probability) break;
@@ -150,19 +198,33 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
     return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
 }
 
+// Where a ray was scattered that may meet lights, as shadow rays from there choose among these.
+struct ScatterPoint {
+    LitPoint lit;
+    float environment_irradiance; // W/m^2, as choose_light_at was given it
+    float pdf;                    // of the ray's direction, 1/sr; 0 where no shadow rays look for the same light
+    bool gathers;                 // whether the ray gathers: it leaves some lights to shadow rays (is_shared_light)
+    uint bounces;                 // of the path there
+};
+
 // Radiance of all, and of one of them, chosen by the random number u, over its probability; which that is, and how far
 // off.
 struct PassedLights { vec3 radiance; vec3 chosen; uint light; float distance; float weights; float u; };
 
-void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direction, vec2 distances, uint ray,
-                float scatter_pdf, vec3 absorption) {
+// kind, leaf: by which shadow rays choose the light.
+void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, ScatterPoint from, vec3 direction,
+                vec2 distances, uint ray, vec3 absorption) {
     Light light = lights[number];
+    vec3 origin = from.lit.position;
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return;
+    if (from.gathers && !is_shared_light(light, from.bounces)) return;
     float distance, pdf;
     vec3 radiance = passed_light(light, origin, direction, distances.y, distance, pdf);
     if (distance <= distances.x && light.kind != LIGHT_SUN) return;
     float way = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance - distances.x;
-    radiance *= exp(-absorption * way) * scatter_mis_weight(scatter_pdf, pdf * light.selection_probability);
+    if (from.pdf > 0.0 && largest(radiance) > 0.0)
+        pdf *= light_probability(from.lit, from.environment_irradiance, kind, leaf);
+    radiance *= exp(-absorption * way) * scatter_mis_weight(from.pdf, pdf);
     passed.radiance += radiance;
 #ifdef TELL_OF_PASSED_LIGHT
     TELL_OF_PASSED_LIGHT(number, radiance);
@@ -176,11 +238,10 @@ void pass_light(inout PassedLights passed, uint number, vec3 origin, vec3 direct
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// The light objects that a ray from an object in a light set passes between two distances; they hide nothing, and the
-// camera sees all. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one loop,
-// since drivers without calls have the code of a light as often as it stands here.
-PassedLights passed_lights(vec3 origin, vec3 direction, vec2 distances, uint ray, float scatter_pdf, uint light_set,
-                           float u, vec3 absorption) {
+// The light objects that a ray passes between two distances; they hide nothing, and the camera sees all. from: in the
+// light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one
+// loop, since drivers without calls have the code of a light as often as it stands here.
+PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u, vec3 absorption) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint sun = distances.y >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
@@ -189,7 +250,8 @@ PassedLights passed_lights(vec3 origin, vec3 direction, vec2 distances, uint ray
         bool is_sun = sun < parameters.sun_count;
         LightNode at = light_nodes[is_sun ? parameters.first_sun + sun : node];
         bool met = is_sun || (at.intensity > 0.0
-                              && ray_meets_box(at.low, at.high, origin, inverse_direction, distances.y));
+                              && ray_meets_box(at.low, at.high, from.lit.position, inverse_direction, distances.y));
+        uint kind = is_sun ? KIND_FIRST_SUN + sun : KIND_OBJECTS, leaf = node;
         if (is_sun) sun += 1u;
         else if (met && node < parameters.light_tree_leaves) {
             node *= 2u;
@@ -200,8 +262,8 @@ PassedLights passed_lights(vec3 origin, vec3 direction, vec2 distances, uint ray
             node >>= uint(findLSB(node));
             if (node == 1u) node = 0u;
         }
-        if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, light_set)))
-            pass_light(passed, at.member, origin, direction, distances, ray, scatter_pdf, absorption);
+        if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, from.lit.light_set)))
+            pass_light(passed, at.member, kind, leaf, from, direction, distances, ray, absorption);
     }
     return passed;
 }
@@ -234,9 +296,8 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set,
     return nearest;
 }
 
-// What a ray passes on so far a way through what absorbs. start: where it was scattered.
-vec3 visible_light(vec3 start, Ray way, float far, uint ray, float scatter_pdf, vec3 absorption) {
-    float gone = distance(start, way.origin);
-    return passed_lights(start, way.direction, vec2(gone, gone + far), ray, scatter_pdf,
-                         light_set_at(way.source_triangle), 0.0, absorption).radiance;
+// What a ray passes on so far a way through what absorbs. from: where it was scattered.
+vec3 visible_light(ScatterPoint from, Ray way, float far, uint ray, vec3 absorption) {
+    float gone = distance(from.lit.position, way.origin);
+    return passed_lights(from, way.direction, vec2(gone, gone + far), ray, 0.0, absorption).radiance;
 }

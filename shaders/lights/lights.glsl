@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light sources: samples of them from a point, and what a ray sees of them.
-// Needs the members scene_center, scene_radius and mesh_selection of the parameters.
+// Needs the members scene_center, scene_radius and gathers_lights of the parameters.
 
 #include "lights/light_table.glsl"
 #include "lights/environment.glsl"
@@ -423,13 +423,18 @@ float scatter_mis_weight(float scatter_pdf, float light_pdf) {
     return scatter_pdf > 0.0 ? 1.0 - power_heuristic(light_pdf, scatter_pdf) : 1.0;
 }
 
-// Pdf in 1/sr with which sample_light gives a direction from the point to a triangle of the emissive meshes, the
-// choice of the meshes included.
+// Whether gathering rays, which set out after so many bounces, share a light with shadow rays. These alone find what
+// has shadows of its own, and keep to the light's limit of bounces.
+bool is_shared_light(Light light, uint bounces) {
+    return parameters.gathers_lights != 0u && light.link == 0u && bounces <= light.max_bounces;
+}
+
+// Pdf in 1/sr with which sample_light gives a direction from the point to an emissive triangle.
 float emissive_triangle_pdf(vec3 point, uint triangle) {
     vec3 v0, v1, v2;
     triangle_corners(triangle, v0, v1, v2);
     float solid_angle = triangle_solid_angle(point, v0, v1, v2);
-    return solid_angle > 0.0 ? parameters.mesh_selection * triangle_vertices[3u * triangle + 1u].w / solid_angle : 0.0;
+    return solid_angle > 0.0 ? 1.0 / solid_angle : 0.0;
 }
 
 // Radiance of a light object without nodes that a ray passes within its length, where it does, and the pdf in

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emissive triangles carry the probability of being chosen, and their traits.
+// Emissive triangles carry their leaf of the light tree, and their traits.
 
 layout(local_size_x = 64) in;
 
@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform Parameters { MarkParameters parameters; };
 layout(std430, binding = 0) readonly buffer EmissiveTriangles;
 layout(std430, binding = 1) buffer Triangles;
+layout(std430, binding = 2) readonly buffer EmitterLeaves { uint emitter_leaves[]; };  // nodes of the light tree
 
 void main() {
     uint index = invocation_index();
@@ -16,6 +17,6 @@ void main() {
     EmissiveTriangle emissive = emissive_triangles[index];
     uint triangle = emissive.triangle - parameters.first_triangle;  // wraps around for those before
     if (triangle >= parameters.triangle_count) return;
-    triangle_vertices[3u * triangle + 1u].w = emissive.share;
+    triangle_vertices[3u * triangle + 1u].w = float(emitter_leaves[index]);
     triangle_vertices[3u * triangle + 2u].w = float(emissive.traits);
 }

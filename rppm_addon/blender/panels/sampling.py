@@ -114,7 +114,8 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
         column.prop(settings, "density_estimation", text="Density")
-        column.prop(settings, "first_photon_hits", text="First Hits")
+        column.prop(settings, "first_camera_hits")
+        column.prop(settings, "first_photon_hits")
         column.prop(settings, "use_splat_roulette")
 
 

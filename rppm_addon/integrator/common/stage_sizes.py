@@ -8,6 +8,7 @@ from ...materials.hair import has_hair
 from ...materials.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
+from ...scene.settings import FirstCameraHits
 from .band import Band, bands_of, rows_of_bands
 from .camera_view import is_rasterized
 from .living_paths import SEGMENTS_AT_ONCE
@@ -27,8 +28,8 @@ class StageSizes:
     passes: tuple[RenderPass, ...] = ()
     has_catchers: bool = False
     """Whether objects catch shadows."""
-    rasterizes_camera: bool = True
-    """Whether the camera's first hits are rasterized."""
+    first_camera_hits: FirstCameraHits | None = FirstCameraHits.AUTOMATIC
+    """How the camera's first hits are found; None where they do not lie on a raster."""
     has_texels: bool = False
     """Whether they are given, as places on a mesh."""
     measures_noise: bool = False
@@ -62,7 +63,7 @@ class StageSizes:
             scene.settings.photon_bounces + 1,
             passes,
             any(instance.shadow_catcher for instance in scene.instances),
-            is_rasterized(scene.camera),
+            scene.settings.first_camera_hits if is_rasterized(scene.camera) else None,
             scene.camera.texels is not None,
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,

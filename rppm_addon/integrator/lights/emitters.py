@@ -33,7 +33,7 @@ from ..common.records import (
 from ..surfaces.geometry import Geometry, Placement, objects_of_most
 from ..surfaces.resolve import Resolve
 from .light_links import NO_LINK, LightLinkTable
-from .light_tree import LightTree, triangle_leaves
+from .light_tree import LightTree, leaf_numbers, morton_order, triangle_leaves
 
 Record("EmittersParameters", photons="uint")
 Record("MarkParameters", count="uint", first_triangle="uint", triangle_count="uint")
@@ -53,11 +53,12 @@ class Emitters(BufferSet):
     """The emissive triangles of a scene, and the emission of those whose material has it vary over the surface.
 
     ``triangles`` holds EMISSIVE_TRIANGLE records, ``count`` of them; ``power`` (3,) is what they emit, W; ``leaves``
-    are theirs of the light tree, until that is built, but for the light sets, and ``links`` (count,) the numbers of
-    their LightLinks.
+    are theirs of the light tree, until that is built, but for the light sets, ``order`` (count,) is that of the leaves
+    along a curve, and ``links`` (count,) are the numbers of their LightLinks.
     """
 
     triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16)
+    _leaf_numbers = StorageBuffer("leaves of emissive triangles", "uint")
     _rays = StorageBuffer("rays to emitters", RAY)
     _hits = StorageBuffer("places on emitters", HIT)
     _closures = StorageBuffer("closures of emitters", CLOSURE)
@@ -72,6 +73,7 @@ class Emitters(BufferSet):
         self.count = 0
         self.power = np.zeros(3)
         self.leaves = LIGHT_NODE.zeros(0)
+        self.order = np.zeros(0, np.int64)
         self.links = np.zeros(0, np.int64)
         self._varying = False
         self._world_triangles: moderngl.Buffer | None = None
@@ -89,6 +91,7 @@ class Emitters(BufferSet):
             )
         self.links = numbers
         self.leaves = triangle_leaves(records, corners.reshape(-1, 3, 3))
+        self.order = morton_order(self.leaves)
         del corners, kinds
         self._varying = bool(varying.any())
         self._world_triangles = geometry.triangles.buffer
@@ -103,10 +106,15 @@ class Emitters(BufferSet):
             traits = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
             records["traits"] = traits + (self.links << EMITTER_LINK_SHIFT)
         self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
+        self._leaf_numbers.upload(leaf_numbers(self.order) if self.count else np.zeros(1, np.uint32))
         for part in geometry.triangles.ranges(geometry.triangle_count):
             self._mark.run(
                 self.count,
-                {"EmissiveTriangles": self.triangles.buffer, "Triangles": part},
+                {
+                    "EmissiveTriangles": self.triangles.buffer,
+                    "EmitterLeaves": self._leaf_numbers.buffer,
+                    "Triangles": part,
+                },
                 {"count": self.count, "first_triangle": part.first, "triangle_count": part.count},
             )
 

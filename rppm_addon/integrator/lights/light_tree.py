@@ -34,13 +34,13 @@ class LightTree(BufferSet):
         super().__init__(context, library, sizes)
         self.parameters: dict[str, int] = {}
 
-    def build(self, lights: np.ndarray, triangles: np.ndarray, light_sets: np.ndarray) -> None:
+    def build(self, lights: np.ndarray, triangles: np.ndarray, order: np.ndarray, light_sets: np.ndarray) -> None:
         """Take the lights (LIGHT records), the leaves of the emissive triangles (triangle_leaves, with their light
-        sets), and by the numbers of links the bits of the light sets, (n, 2)."""
+        sets) and their order (morton_order), and by the numbers of links the bits of the light sets, (n, 2)."""
         near, suns = light_leaves(lights), sun_leaves(lights)
         for leaves in (near, suns):
             leaves["light_sets"] = light_sets[lights["link"][leaves["member"]]]
-        parts = [tree_of(near), tree_of(triangles), suns]
+        parts = [tree_of(near), tree_of(triangles, order), suns]
         firsts = np.cumsum([0] + [len(part) for part in parts])
         self.parameters = {
             "light_tree_leaves": len(parts[0]) // 2,
@@ -114,14 +114,25 @@ def triangle_leaves(emissive: np.ndarray, corners: np.ndarray) -> np.ndarray:
     return leaves
 
 
-def tree_of(leaves: np.ndarray) -> np.ndarray:
-    """(2 n,) LIGHT_NODE records of a complete tree over n leaves; node 0 is none."""
+def leaf_numbers(order: np.ndarray) -> np.ndarray:
+    """(n,) uint32: the nodes of a tree (tree_of) that the leaves become; order: theirs along the curve."""
+    count = len(order)
+    numbers = np.zeros(count, np.uint32)
+    if count:
+        level = 1 << ((2 * count - 1).bit_length() - 1)
+        numbers[order] = np.concatenate([np.arange(level, 2 * count), np.arange(count, level)])
+    return numbers
+
+
+def tree_of(leaves: np.ndarray, order: np.ndarray | None = None) -> np.ndarray:
+    """(2 n,) LIGHT_NODE records of a complete tree over n leaves; node 0 is none. order: morton_order of the
+    leaves, where it is known."""
     count = len(leaves)
     nodes = LIGHT_NODE.zeros(2 * count)
     if not count:
         return nodes
     level = 1 << ((2 * count - 1).bit_length() - 1)  # the first node of the lowest
-    ordered = leaves[_morton_order(leaves)]
+    ordered = leaves[morton_order(leaves) if order is None else order]
     nodes[level:], nodes[count:level] = np.split(ordered, [2 * count - level])  # from left to right
     while level > 1:
         level //= 2
@@ -136,7 +147,10 @@ def _widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return low - slack, high + slack
 
 
-def _morton_order(leaves: np.ndarray) -> np.ndarray:
+def morton_order(leaves: np.ndarray) -> np.ndarray:
+    """(n,) the numbers of leaves (LIGHT_NODE records) in their order along a Morton curve."""
+    if not len(leaves):
+        return np.zeros(0, np.int64)
     centers = 0.5 * (leaves["low"].astype(np.float64) + leaves["high"])
     low = centers.min(axis=0)
     extent = max((centers.max(axis=0) - low).max(), 1e-30)

@@ -55,7 +55,7 @@ LIGHT_PARAMETERS = {
     "environment_width": "uint",
     "environment_height": "uint",
     "emissive_triangle_count": "uint",
-    "mesh_selection": "float",
+    "gathers_lights": "uint",
     "world_selection": "float",
     "environment_irradiance": "float",
     "mesh_light": "uint",
@@ -69,11 +69,11 @@ LIGHT_PARAMETERS = {
     "iteration": "uint",
     "direct_world_flux": "float",
 }
-"""Parameters of every program that includes shaders/lights/lights.glsl. ``mesh_selection`` and
-``world_selection`` are the probabilities of choosing the emissive meshes and the world for direct light, as MIS
-weights take them; ``mesh_light`` and ``world_light`` their numbers; ``environment_irradiance`` what the world may
-give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights`` Lights', ``world_visibility`` the rays that see
-the world, ``world_bounces`` its max_bounces."""
+"""Parameters of every program that includes shaders/lights/lights.glsl. ``gathers_lights``: whether gathering rays
+share lights with shadow rays (shadows_are_of_all); ``world_selection`` is the probability of choosing the world for
+direct light, as MIS weights take it; ``mesh_light`` and ``world_light`` are the numbers of lights;
+``environment_irradiance`` what the world may give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights``
+Lights', ``world_visibility`` the rays that see the world, ``world_bounces`` its max_bounces."""
 
 
 def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
@@ -91,6 +91,16 @@ def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
             counts[richest] -= 1
             counts[index] = 1
     return counts
+
+
+_BOUNCED = RayVisibility.DIFFUSE | RayVisibility.GLOSSY | RayVisibility.TRANSMISSION | RayVisibility.SHADOW
+
+
+def shadows_are_of_all(scene: Scene) -> bool:
+    """Whether shadow rays meet the same objects as rays that surfaces scatter, so that both find the same light."""
+    return all(
+        instance.visibility & _BOUNCED == _BOUNCED and not instance.shadow_catcher for instance in scene.instances
+    )
 
 
 class Lights(BufferSet):
@@ -309,7 +319,7 @@ class Lights(BufferSet):
         self.links.upload(links.records)
         sets = links.records["light_sets"]
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
-        self._light_tree.build(table, self.emitters.leaves, sets)
+        self._light_tree.build(table, self.emitters.leaves, self.emitters.order, sets)
         self.emitters.leaves = LIGHT_NODE.zeros(0)  # as large as the triangles themselves
         self._parameters = {
             "scene_center": geometry.center,
@@ -319,7 +329,7 @@ class Lights(BufferSet):
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
             "emissive_triangle_count": self.emitters.count,
-            "mesh_selection": float(selection[table["kind"] == LightShape.MESH].sum()),
+            "gathers_lights": shadows_are_of_all(scene),
             "world_selection": float(selection[table["kind"] == LightShape.WORLD].sum()),
             "environment_irradiance": 2 * math.pi * float(np.mean(np.abs(self.environment.mean_radiance))),
             "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),

@@ -33,7 +33,7 @@ Record(
     iteration="uint",
     quantum="float",
 )
-Record("PassedLightParameters", **LIGHT_PARAMETERS, groups="uint")
+Record("PassedLightParameters", **LIGHT_PARAMETERS, groups="uint", next_event="uint")
 StorageBlock("GroupedLight", "float grouped_light[];")
 StorageBlock("SeenLight", "vec4 seen_light[];")
 
@@ -109,7 +109,11 @@ class LightGroups(BufferSet):
                     "GroupedLight": self._grouped.buffer,
                     "Materials": context.materials.buffers["Materials"],
                 },
-                {**lights.parameters(iteration), "groups": self._groups},
+                {
+                    **lights.parameters(iteration),
+                    "groups": self._groups,
+                    "next_event": context.settings.direct_light is DirectLightMode.RAYS,
+                },
             )
 
     def add_seen_light(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DirectCameraHits of panoramas and of cameras with an aperture: rays through the deep cubemap."""
+"""DirectCameraHits of panoramas, of cameras with an aperture, and of others where tracing is faster."""
 
 import numpy as np
 
@@ -18,15 +18,17 @@ Record("PrimaryRaysParameters", first_pixel="uint", seed="uint", iteration="uint
 
 
 class PrimaryRays(CameraHits):
-    """Stands in for the GBuffer where rays do not come from one point, or meet no plane."""
+    """Stands in for the GBuffer where rays do not come from one point, or meet no plane, and where tracing them is
+    faster than rasterizing all triangles."""
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._rays = library.compute("primary_rays/rays.comp")
+        self._is_on_raster = sizes.first_camera_hits is not None
 
     def raster(self, band: Band) -> CameraRaster | None:
-        """None: first hits lie on no raster."""
-        return None
+        """CameraHits.raster."""
+        return CameraRaster(self.camera.buffer, band.columns, band.rows) if self._is_on_raster else None
 
     def find(
         self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration

@@ -9,6 +9,7 @@ from ...gl.buffer_sets import BufferSet, Part, sum_by_name
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.scene import Scene
+from ...scene.settings import FirstCameraHits
 from ..common.band import Band
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
@@ -47,10 +48,13 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
 """How memory is reported: stages by group."""
 
 
-def _camera_hits(sizes: StageSizes) -> type[CameraHits]:
+def _camera_hits(sizes: StageSizes, is_software: bool) -> type[CameraHits]:
+    """What finds the camera's first hits. Software drivers take longer to draw all triangles than to trace a ray for
+    each pixel (docs/benchmarks/moves.md)."""
     if sizes.has_texels:
         return TexelHits
-    return GBuffer if sizes.rasterizes_camera else PrimaryRays
+    drawn = FirstCameraHits.RASTERIZED, *(() if is_software else (FirstCameraHits.AUTOMATIC,))
+    return GBuffer if sizes.first_camera_hits in drawn else PrimaryRays
 
 
 class StageSet(BufferSet):
@@ -80,7 +84,9 @@ class StageSet(BufferSet):
         self.refuse_large(context, self._sizes)
         with library.defining(self._sizes.defines):
             super().__init__(context, library, self._sizes)
-            self.camera_hits: CameraHits = self.own(_camera_hits(self._sizes)(context, library, self._sizes))
+            self.camera_hits: CameraHits = self.own(
+                _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)
+            )
         self.coverage = Coverage(library)
         self.bands = self._sizes.bands
 

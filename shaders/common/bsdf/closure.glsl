@@ -101,11 +101,12 @@ float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 
 // How a camera path may go on: shares of the transparent part and of the three lobes, where they are specular; and of
 // the diffuse and translucent parts together and of the lobes that store photons, by which a path that gathers goes on
-// once. total: of those by which it may go on.
-struct PathShares { vec4 specular; vec4 stored; float total; };
+// once. total: of those by which it may go on; survival: the probability that it does.
+struct PathShares { vec4 specular; vec4 stored; float total; float survival; };
 
-// Roulette sets in once the path's throughput has fallen; total: of all shares by which it may go on.
-float path_survival(float total) { return min(1.0, 4.0 * total); }
+// Roulette sets in once the path's throughput has fallen, and not where the camera sees the surface: of what is dark
+// there, half of all paths would end. total: of all shares by which the path may go on.
+float path_survival(float total, bool is_seen) { return is_seen ? 1.0 : min(1.0, 4.0 * total); }
 
 // Whether a smooth lobe reflects so seldom that a shadow ray looks for light objects where its reflection leads, since
 // paths that go there would find them seldom and then very bright. alpha: up to which lobes are smooth.
@@ -115,7 +116,5 @@ bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, i
     return reflected > 0.0 && shares[1 + k] * reflected < 0.5 * total;
 }
 
-// Probability of choosing lobe k, survival included.
-float lobe_probability(vec4 shares, float total, int k) {
-    return shares[1 + k] * path_survival(total) / max(total, 1e-20);
-}
+// Probability of going on by a part of the closure with this share, survival included.
+float part_probability(float share, PathShares shares) { return share * shares.survival / max(shares.total, 1e-20); }

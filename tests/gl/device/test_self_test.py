@@ -34,7 +34,7 @@ def test_rays_that_hit_something_else_are_found(monkeypatch):
 
     monkeypatch.setattr(TracedTriangles, "trace", almost)
     finding = checks.exact_rays(None)
-    assert not finding.passed and finding.text.startswith("1 of ")
+    assert not finding.passed and finding.text.startswith("2 of ")
 
 
 def test_a_picture_that_differs_is_found():

@@ -11,6 +11,22 @@ layout(std140, binding = 0) uniform Parameters { LightChoicesParameters paramete
 #include "lights/light_tree.glsl"
 layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
 
+// What rays that meet the light of a choice tell of its probability; of the environment none do.
+float told_probability(LightChoice choice, LitPoint point) {
+    uint kind = lights[choice.light].kind, leaf = 0u;
+    if (kind == LIGHT_WORLD) return choice.probability;
+    if (kind == LIGHT_MESH) {
+        leaf = uint(triangle_vertices[3u * emissive_triangles[choice.triangle].triangle + 1u].w);
+        return light_probability(point, parameters.environment_irradiance, KIND_TRIANGLES, leaf);
+    }
+    for (uint sun = 0u; sun < parameters.sun_count; ++sun)
+        if (light_nodes[parameters.first_sun + sun].member == choice.light)
+            return light_probability(point, parameters.environment_irradiance, KIND_FIRST_SUN + sun, 0u);
+    for (uint node = parameters.light_tree_leaves; node < 2u * parameters.light_tree_leaves; ++node)
+        if (light_nodes[node].member == choice.light) leaf = node;
+    return light_probability(point, parameters.environment_irradiance, KIND_OBJECTS, leaf);
+}
+
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
@@ -22,14 +38,16 @@ void main() {
             float distance, pdf;
             all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
-        PassedLights passed = passed_lights(origin, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0,
-                                            0u, 0.0, vec3(0.0));
+        ScatterPoint from = ScatterPoint(LitPoint(origin, vec3(0.0), false, 0u), 0.0, 0.0, false, 0u);
+        PassedLights passed = passed_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0,
+                                            vec3(0.0));
         results[index] = vec4(passed.radiance.xy, all.xy);
         return;
     }
     // Evenly spaced numbers: each choice gets the part of them that is its probability.
     float u = (float(index) + 0.5) / float(parameters.count);
-    LightChoice choice = choose_light_at(LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u, 0u),
-                                         parameters.environment_irradiance, u, next_random(random));
-    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(choice.triangle), choice.probability, 0.0);
+    LitPoint point = LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u, 0u);
+    LightChoice choice = choose_light_at(point, parameters.environment_irradiance, u, next_random(random));
+    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(choice.triangle), choice.probability,
+                          told_probability(choice, point));
 }

@@ -22,6 +22,8 @@ void main() {
     if (sampled.triangle != NO_TRIANGLE) {
         seen = vec3(parameters.emitted);
         pdf = emissive_triangle_pdf(parameters.point, sampled.triangle);
+        for (uint emissive = 0u; emissive < parameters.emissive_triangle_count; ++emissive)
+            if (emissive_triangles[emissive].triangle == sampled.triangle) pdf *= emissive_triangles[emissive].share;
     } else if (sampled.distance > 0.0)
         seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);
     results[3u * index] = vec4(sampled.direction, sampled.distance);

@@ -20,7 +20,7 @@ MODES = {
 }
 
 
-def _scene(mode: DirectLight, half: float, **light: object) -> Scene:
+def _scene(mode: DirectLight, half: float, iterations: int = 0, **light: object) -> Scene:
     """A floor that halves a lamp, seen from above: a square of so much to either side."""
     floor = rectangle("floor", (-4, -4, 0), (4, -4, 0), (4, 4, 0), (-4, 4, 0))
     lamp = Light("lamp", LightKind.POINT, placed(0, 0, 0), np.full(3, INTENSITY), radius=RADIUS, **light)
@@ -30,7 +30,11 @@ def _scene(mode: DirectLight, half: float, **light: object) -> Scene:
         [Instance(0, np.eye(4), [0])],
         [diffuse(ALBEDO, ALBEDO, ALBEDO)],
         [lamp],
-        settings=RenderSettings(direct_light=mode, photon_path_length=1, **MODES[mode]),
+        settings=RenderSettings(
+            direct_light=mode,
+            photon_path_length=1,
+            **(MODES[mode] | ({"iterations": iterations} if iterations else {})),
+        ),
     )
 
 
@@ -52,7 +56,7 @@ def test_a_floor_within_a_sphere_sees_half_of_it(renderer, mode):
 def test_photons_bring_what_shadow_rays_find(renderer, kind):
     """Within the lamp and beside it."""
     pictures = [
-        _from_above(renderer, _scene(mode, 3.0 * RADIUS, soft_falloff=kind == "disk")) for mode in MODES
+        _from_above(renderer, _scene(mode, 3.0 * RADIUS, 160, soft_falloff=kind == "disk")) for mode in MODES
     ]  # fmt: skip
     by_rays, by_photons = (picture.reshape(4, 8, 4, 8).mean(axis=(1, 3)) for picture in pictures)
     np.testing.assert_allclose(by_photons, by_rays, rtol=0.08)

@@ -97,6 +97,8 @@ def test_choices_come_as_often_as_they_say(mapper, library, count, both_sides):
         _, first, counts = np.unique(chosen[probability > 0], axis=0, return_index=True, return_counts=True)
         # An interval's ends take or leave one number each, and rounding on the way down the tree another.
         np.testing.assert_allclose(counts, probability[probability > 0][first] * CHOICES, atol=3)
+        # Rays that meet a light know it.
+        np.testing.assert_allclose(table[probability > 0, 3], probability[probability > 0], rtol=1e-5)
 
 
 def test_no_light_that_reaches_a_point_is_left_out(mapper, library):

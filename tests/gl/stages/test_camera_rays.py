@@ -7,11 +7,14 @@ import scenes
 
 from rppm_addon.gl.sources import expand
 from rppm_addon.integrator.common.camera_view import camera_view
-from rppm_addon.integrator.common.records import CAMERA_PATH, CAMERA_VIEW, RAY
+from rppm_addon.integrator.common.records import CAMERA_PATH, CAMERA_VIEW, HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.stages.gbuffer import GBuffer
+from rppm_addon.integrator.stages.primary_rays import PrimaryRays
 from rppm_addon.scene import (
     Aperture,
     Camera,
     DirectLight,
+    FirstCameraHits,
     Instance,
     Light,
     LightKind,
@@ -281,16 +284,19 @@ SETTINGS = {
 
 @pytest.mark.parametrize("name", SETTINGS)
 @pytest.mark.parametrize("orthographic", [False, True])
-def test_a_lens_of_no_size_gives_the_raster_picture(renderer, name, orthographic):
-    """Traced first hits and photons found by the cubemap, against rasterized ones and photons on the camera's view.
+@pytest.mark.parametrize("has_lens", [False, True])
+def test_traced_hits_give_the_raster_picture(renderer, name, orthographic, has_lens):
+    """Traced first hits against rasterized ones, with photons on the camera's view; through a lens of no size,
+    photons are found by the cubemap.
 
     In the first iteration both have the same photons; later ones go where these were of use, to the last pixel.
     """
-    scene = scenes.room(24, photons=16384, iterations=1, **SETTINGS[name])
+    scene = scenes.room(24, photons=16384, iterations=1, first_camera_hits=FirstCameraHits.RASTERIZED, **SETTINGS[name])
     if orthographic:
         scene.camera.orthographic, scene.camera.window = True, (-1.0, 1.0, -1.0, 1.0)
     raster = renderer.render(scene).frame
-    scene.camera.aperture = Aperture(0.0, 3.0)
+    scene.settings.first_camera_hits = FirstCameraHits.TRACED
+    scene.camera.aperture = Aperture(0.0, 3.0) if has_lens else None
     traced = renderer.render(scene).frame
     # Pixels whose middle lies on an edge may see either side of it.
     same = np.isclose(traced.combined, raster.combined, rtol=2e-3, atol=2e-3).all(-1)
@@ -334,3 +340,28 @@ def test_records_agree_with_the_shader():
     for index, kind in enumerate(PanoramaKind):
         assert f"PROJECTION_{kind.name} = {index + 2}u" in source
     assert CAMERA_VIEW.size % 16 == 0
+
+
+@pytest.mark.parametrize(("asked", "rasterizes"), [
+    (FirstCameraHits.RASTERIZED, True), (FirstCameraHits.TRACED, False), (FirstCameraHits.AUTOMATIC, False)
+])  # fmt: skip
+def test_software_drivers_trace_first_hits(mapper, asked, rasterizes):
+    if not mapper.context.is_software and asked is FirstCameraHits.AUTOMATIC:
+        rasterizes = True
+    mapper.build(scenes.room(16, first_camera_hits=asked))
+    assert isinstance(mapper.stages.camera_hits, GBuffer if rasterizes else PrimaryRays)
+
+
+def test_what_is_drawn_is_what_is_traced(mapper):
+    """Of a scene with all kinds of surfaces: but for edges, the same hits bit for bit."""
+    hits = {}
+    for route in (FirstCameraHits.RASTERIZED, FirstCameraHits.TRACED):
+        mapper.build(scenes.crowded_room(48, first_camera_hits=route, camera_path_length=1))
+        mapper.iterate()
+        hits[route] = mapper.stages.importons.hits.read(HIT.dtype, 48 * 48)
+    drawn, traced = hits.values()
+    same = drawn["triangle"] == traced["triangle"]
+    assert same.mean() > 0.995
+    seen = same & (traced["triangle"] != NO_TRIANGLE)
+    np.testing.assert_array_equal(drawn[seen], traced[seen])
+    assert seen.mean() > 0.5
