@@ -3,21 +3,23 @@
 
 from collections.abc import Iterator
 
+from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
-from .learning import Learning
+from .learning import BandFindings, Learning
 from .stages.gbuffer import jittered_view
 from .stages.stage_set import StageSet
 
 
 def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:
     """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
-    photons, importons, camera_hits = stages.photons, stages.importons, stages.camera_hits
+    importons, camera_hits = stages.importons, stages.camera_hits
     estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
     yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
-    photons_taken = []
+    findings: list[BandFindings] = []
+    stages.photon_noise.begin()
     yield
     for band in stages.bands:
         stages.clear(context)
@@ -28,6 +30,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
                 break
+            stages.photon_noise.count(importons, iteration)
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
             yield
@@ -46,8 +49,9 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
-        if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
+        if iteration.needs_radiance:
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
+        if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
             film.accumulate(context, importons.radiances, estimator.sums, band, iteration)
             film.add_aovs(importons, band, iteration)
             stages.noise_estimate.add(context, importons.radiances, estimator.sums, band, iteration)
@@ -56,11 +60,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             )
             groups.accumulate(context, stages.final_gather, estimator.sums, film, band, iteration, radii)
         if iteration.precedes_learning:
-            photons_taken.append(estimator.sums.photons_taken(band.pixel_count)[:, 0])
-            fewer = learning.fewer(iteration)
-            stages.caustic_radii.narrow(estimator.sums, band, iteration, radii, fewer, context.timers)
-    if iteration.is_tallied:
-        learning.tally(context, photons, estimator.photon_list, iteration, photons_taken)
+            findings.append(_read_findings(context, stages, learning, band, iteration, radii))
+    _learn(context, stages, learning, iteration, findings)
     yield
 
 
@@ -84,3 +85,25 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     radii = learning.radii_for(iteration, listed)
     estimator.begin(context.settings, stages.photons.stored(context, iteration, listed, radii), iteration)
     return radii
+
+
+def _read_findings(
+    context: StageContext, stages: StageSet, learning: Learning, band: Band, iteration: Iteration, radii: Radii
+) -> BandFindings:
+    """What a band tells of photons; nothing needs its radiances any more."""
+    sums, fraction = stages.density_estimator.sums, learning.photon_fraction(iteration)
+    taken = sums.photons_taken(band.pixel_count)
+    stages.caustic_radii.narrow(sums, band, iteration, radii, fraction, context.timers)
+    if not learning.weighs_noise:
+        return BandFindings(taken)
+    gather, importons = stages.final_gather, stages.importons
+    return BandFindings(taken, stages.photon_noise.sample(context, importons, gather, sums, band, iteration, radii))
+
+
+def _learn(
+    context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration, findings: list[BandFindings]
+) -> None:
+    if iteration.is_tallied:
+        learning.tally(context, stages.photons, findings)
+    if iteration.precedes_learning and learning.weighs_noise:
+        learning.weigh_noise(iteration, stages.photons, stages.photon_noise.vertices, findings)

@@ -2,6 +2,7 @@
 """What iterations learn for those that come: how wide the radii have to be, and where photons are sent."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from ..scene.meshes import RayVisibility
 from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.known import known
-from .common.photon_counts import PhotonCounts, later_photons, photons_of_use
+from .common.photon_counts import NoiseSamples, PhotonCounts, PhotonNoise, camera_cost, photon_cost
 from .density_estimation.radii import (
     Radii,
     expected_photons,
@@ -33,6 +34,22 @@ _MOST_LEAVING = 0.25
 """Of gathering rays: where more leave the scene, rays find the world's light as well as photons or better."""
 _LEAST_UNCOVERED = 0.02
 """Of those that leave: where more pass portals, shadow rays find nearly all of it there."""
+
+
+_WEIGHED_AT = 64
+"""The iteration with whose radii the noise of photons is weighed."""
+_PHOTONS_OF_DISKS, _FEWEST_OF_DISKS = 0.25, 1 << 11
+"""Photons a pixel, and at all, with which the wide radius holds the expected number: of fewer it holds fewer."""
+
+
+@dataclass(frozen=True)
+class BandFindings:
+    """What a band of an iteration that is learned from tells of photons."""
+
+    photons_taken: np.ndarray
+    """(pixels, 2): SplatSums.photons_taken."""
+    noise_samples: np.ndarray | None = None
+    """PhotonNoise.sample, where the noise is weighed."""
 
 
 def may_share_world_light(context: StageContext) -> bool:
@@ -60,7 +77,14 @@ class Learning:
         """r_min and r_max of the first iteration, meters."""
         self.widest_radius = widest_radius(footprints, geometry.bounds_low, geometry.bounds_high)
         self._automatic = settings.photons == 0
-        self.photon_counts = PhotonCounts(context.scene.photon_count, context.scene.photon_count)
+        self.photon_counts = PhotonCounts((context.scene.photon_count,))
+        columns, rows = camera.resolution
+        of_disks = max(_PHOTONS_OF_DISKS * columns * rows, _FEWEST_OF_DISKS)
+        self._photons_of_disks = min(of_disks, context.scene.photon_count)
+        self.photon_noise = PhotonNoise()
+        self.rest: np.ndarray | None = None
+        """(rows, columns) float32, where photons are automatic: luminance of samples of the last iteration that was
+        learned from, without that of photons."""
         leaves_little = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
         self._shares_world_light = leaves_little and pilot.uncovered_fraction >= _LEAST_UNCOVERED
         self.wide_radius = 0.0
@@ -69,29 +93,20 @@ class Learning:
         """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
 
     def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
-        """Radii of an iteration whose stored photons are known. The first one's say how many later ones have, until
-        tally knows which lights these are of."""
+        """Radii of an iteration whose stored photons are known."""
         if iteration.number == 1:
-            self._count_later_photons(listed.count, listed.count - listed.diffused_count)
             bounds = self._geometry.bounds_low, self._geometry.bounds_high
             self.wide_radius = min(wide_radius(listed.diffused_count, self._expected, *bounds), self.widest_radius)
         return self.radii(iteration.number)
-
-    def _count_later_photons(self, listed: float, caustic: float) -> None:
-        """Follow the photons of the first iteration that importons might take, and the caustic ones among them."""
-        if self._automatic:
-            first, (columns, rows) = self.photon_counts.first, self._size
-            later = later_photons(first, columns * rows, caustic if self._by_ray else listed, listed)
-            self.photon_counts = PhotonCounts(first, later)
 
     def radii(self, number: int) -> Radii:
         """Those of the iteration of this number, from 1, as far as it is known."""
         shrunk = shrinkage(number, self._alpha)
         return Radii(*self.limits, self.wide_radius, self._scale, self._most_factor, shrunk)
 
-    def fewer(self, iteration: Iteration) -> float:
-        """Photons of the next iteration over those of this one."""
-        return self.photon_counts.of(iteration.number + 1) / iteration.photon_count
+    def photon_fraction(self, iteration: Iteration) -> float:
+        """Photons of an iteration over those of the first."""
+        return iteration.photon_count / self.photon_counts.first
 
     def direct_world_flux(self, lights: Lights) -> float:
         """Iteration's, of the next one: where few rays leave the scene, photons find in, and all rays see the world."""
@@ -102,30 +117,53 @@ class Learning:
         self,
         context: StageContext,
         photons: Photons,
-        listed: PhotonList,
-        iteration: Iteration,
-        photons_taken: list[np.ndarray],
+        findings: list[BandFindings],
     ) -> None:
-        """Count which photons of an iteration contributed, and how many diffused ones pixels took, by band. Those of
-        the first say how many later ones have, as far as lights differ in what they are good for."""
+        """Count which photons of an iteration contributed; ``findings``: by band, where it is learned from."""
         with context.timers.stage("learning"):
             context.lights.tally(photons.stored_blocks, photons.slots)
-            light_count = len(context.lights.table)
-            if iteration.number == 1 and self._automatic and self._by_ray and listed.count and light_count > 1:
-                lights = context.lights.buffers["Lights"]
-                by_light = listed.by_light(photons.photons.buffer, lights, light_count)
-                self._count_later_photons(*photons_of_use(by_light))
             self.diffused_photons_found = None
-            if photons_taken:
-                counts = np.concatenate(photons_taken)[at_pixels(self.leaves_importon, *self._size)]
+            if findings:
+                taken = np.concatenate([band.photons_taken for band in findings])
+                counts = taken[at_pixels(self.leaves_importon, *self._size), 0]
                 self.diffused_photons_found = photons_found_by_ray(counts) if self._by_ray else photons_found(counts)
+
+    @property
+    def weighs_noise(self) -> bool:
+        """Whether the number of photons follows the noise: without final gather all that is seen of light from other
+        surfaces would be blotches of fewer photons."""
+        return self._automatic and self._by_ray
+
+    def weigh_noise(
+        self,
+        iteration: Iteration,
+        photons: Photons,
+        vertices: int,
+        findings: list[BandFindings],
+    ) -> None:
+        """Choose how many photons the iterations after one that is learned from have; ``vertices``: of its camera
+        paths."""
+        found = NoiseSamples.of(np.concatenate([known(band.noise_samples) for band in findings]))
+        if self.rest is None:
+            self.photon_noise = self.photon_noise.with_first(found)
+        else:
+            growth = (shrinkage(iteration.number, self._alpha) / shrinkage(_WEIGHED_AT, self._alpha)) ** 2
+            self.photon_noise = self.photon_noise.with_next(iteration.photon_count, found, self.rest, growth)
+        self.rest = found.rest.astype(np.float32)
+        pairs = sum(int(band.photons_taken.sum(dtype=np.int64)) for band in findings)
+        each = photon_cost(iteration.photon_count, photons.count_segments(), pairs)
+        paths = camera_cost(vertices, iteration.shadow_rays)
+        later = self.photon_noise.best_photons(self.photon_counts.first, each, paths)
+        self.photon_counts = self.photon_counts.followed_by(later)
 
     def learn(self, context: StageContext, number: int) -> None:
         """Put to use what the iterations up to this number have tallied."""
         with context.timers.stage("learning"):
             gain = context.lights.learn(self.photon_counts.of(number + 1))
             shrunk = self.wide_radius * shrinkage(number, self._alpha)
+            # Fewer photons make noise, which is weighed, and not wider disks, of which nobody would know the bias.
+            expected = self._expected * min(self.photon_counts.of(number + 1) / self._photons_of_disks, 1.0)
             # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, self._expected, known(self.diffused_photons_found))
+            fitted = fitted_wide_radius(shrunk, expected, known(self.diffused_photons_found))
             self.wide_radius = min(fitted / math.sqrt(min(gain, 4.0)), self.widest_radius)
             self.diffused_photons_found = None

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.errors import CheckpointError
-from .common.photon_counts import PhotonCounts
+from .common.iteration import LEARNING_ITERATIONS
+from .common.photon_counts import PhotonCounts, PhotonNoise
 from .learning import Learning
 from .lights.lights import Lights
 from .stages.stage_set import StageSet
@@ -21,7 +22,9 @@ class RenderState:
     iteration: int
     """The last that was run, counted from 1: ``iteration - skipped`` are in the film. The radii follow (Eq. 2)."""
     photon_counts: PhotonCounts
-    """Where automatic, known once the first iteration has been."""
+    """Where automatic, those that are known so far."""
+    photon_noise: PhotonNoise
+    """What the photons to come are chosen by, where automatic."""
     wide_radius: float
     """Of the first iteration, meters: what diffused photons are spread over."""
     diffused_photons_found: float | None
@@ -39,6 +42,9 @@ class RenderState:
     """(cells, 2) uint32 of the guide: photons that left through each cell, and those that contributed."""
     learned: np.ndarray | None
     """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
+    rest: np.ndarray | None
+    """(rows, columns) float32 of some pixels: the luminance that came without photons in the last iteration that was
+    learned from, while others are to be; None where photons are not automatic."""
     half: np.ndarray | None = None
     """(height, width, 3) float32: as radiance, that of half of the iterations (NoiseEstimate); None where the picture
     does not end with its noise."""
@@ -56,6 +62,7 @@ def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: 
         skipped=skipped,
         iteration=iteration,
         photon_counts=learning.photon_counts,
+        photon_noise=learning.photon_noise,
         wide_radius=learning.wide_radius,
         diffused_photons_found=learning.diffused_photons_found,
         radiance=film.read_radiance(),
@@ -64,6 +71,7 @@ def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: 
         radius_factors=stages.caustic_radii.read(),
         tallies=lights.guide.read_tallies(),
         learned=lights.guide.learned,
+        rest=learning.rest if iteration < LEARNING_ITERATIONS else None,
         half=stages.noise_estimate.read(),
     )
 
@@ -80,7 +88,7 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
             f"not {film.width}x{film.height}; begin anew"
         )
     try:
-        lights.restore(state.tallies, state.learned, state.photon_counts.later)
+        lights.restore(state.tallies, state.learned, state.photon_counts.of(state.iteration))
     except ValueError as error:
         raise CheckpointError(f"the checkpoint is none of this scene's: {error}; begin anew") from error
     try:
@@ -92,6 +100,12 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
             "the checkpoint is of a render without a noise threshold; go on without one (use_adaptive_sampling) or "
             "begin anew"
         )
+    if state.rest is None:
+        if learning.weighs_noise and state.iteration < LEARNING_ITERATIONS:
+            raise CheckpointError("the checkpoint does not tell the noise of photons; begin anew")
+    elif state.rest.shape != stages.photon_noise.shape:
+        raise CheckpointError(f"the checkpoint has {state.rest.shape} samples of noise; begin anew")
     stages.caustic_radii.restore(state.radius_factors)
-    learning.photon_counts = state.photon_counts
+    learning.photon_counts, learning.photon_noise = state.photon_counts, state.photon_noise
+    learning.rest = state.rest
     learning.wide_radius, learning.diffused_photons_found = state.wide_radius, state.diffused_photons_found

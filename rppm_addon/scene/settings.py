@@ -172,8 +172,8 @@ class RenderSettings:
         0,
         "Photons",
         "Photons emitted in each sample, allocated to the lights by their power and photon weight; "
-        "0 is automatic: as many as the picture has pixels, within limits, and fewer after the first sample "
-        "where caustics are a small part of the light",
+        "0 is automatic: as many as the picture has pixels, within limits, and fewer after the second sample "
+        "where they make little of the noise",
         minimum=0,
         maximum=MOST_PHOTONS,
         zero="automatic",
@@ -563,7 +563,7 @@ class RenderSettings:
 
     def photons_for(self, width: int, height: int) -> int:
         """Photons of an iteration that renders so many pixels. Where automatic, one a pixel within limits: those of
-        the first iteration, which later ones do not exceed (integrator/photon_counts.py).
+        the first iteration, which later ones do not exceed (integrator/common/photon_counts.py).
 
         Depends on nothing that another machine or another run would find otherwise.
         """

@@ -2,7 +2,8 @@
 """Checkpoints of stills in OpenEXR files: the picture so far, and beside it all that it takes to go on bit for bit.
 
 The first part of a file is the film as any viewer shows it (before exposure), with the numbers of iterations that each
-pixel's passes are of and the factor of its radius; the second has what the guide of the photons learned. Numbers are
+pixel's passes are of and the factor of its radius; the second has what the guide of the photons learned; a third, while
+photons are chosen by their noise, what was found without them last. Numbers are
 JSON in the attribute ``rppm.checkpoint``. After the EXR's own end come a mark and the SHA-256 of all before it, so
 that a file that was cut short or damaged is known before it is parsed: OpenEXR reads pixels that are damaged without
 an error.
@@ -20,7 +21,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from ..integrator.common.photon_counts import PhotonCounts
+from ..integrator.common.photon_counts import PhotonCounts, PhotonNoise
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.declared import declared
@@ -34,11 +35,11 @@ from .continuation import Pause
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 6
+FORMAT = 7
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
-_FILM, _GUIDE = "film", "guide"
+_FILM, _GUIDE, _REST = "film", "guide", "rest"
 _COUNTS = ("Pass Counts.X", "Pass Counts.Y")
 _HALF = ("Half.R", "Half.G", "Half.B")
 _BLOCK = 1 << 20
@@ -68,6 +69,7 @@ class CheckpointSummary:
     left_out: int
     iteration: int
     photon_counts: PhotonCounts
+    photon_noise: PhotonNoise
     wide_radius: float
     diffused_photons_found: float | None
     device: str
@@ -91,6 +93,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         state.skipped,
         state.iteration,
         state.photon_counts,
+        state.photon_noise,
         state.wide_radius,
         state.diffused_photons_found,
         pause.device,
@@ -113,6 +116,10 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         OpenEXR.Part(film, _film_channels(state, pause.inspections, found_passes), _FILM),
         OpenEXR.Part(guide, _guide_channels(state), _GUIDE),
     ]
+    if state.rest is not None:
+        rows, columns = state.rest.shape
+        rest = {**guide, "dataWindow": ((0, 0), (columns - 1, rows - 1))}
+        parts.append(OpenEXR.Part(rest, {_REST: state.rest}, _REST))
     with renamed_when_whole(path) as temporary:
         OpenEXR.File(parts).write(temporary)
         with Path(temporary).open("r+b") as file:
@@ -131,7 +138,8 @@ def read_summary(path: str | Path) -> CheckpointSummary:
 def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
     """A checkpoint as it was written. Raises CheckpointError when it is none or damaged."""
     with _opened(path, header_only=False) as (file, summary):
-        film, guide = ({name: channel.pixels for name, channel in file.channels(part).items()} for part in range(2))
+        film, guide = (_pixels(file, part) for part in range(2))
+        rest = _pixels(file, 2)[_REST] if len(file.parts) > 2 else None
 
         def layer(*names: str) -> np.ndarray:
             planes = [film[name][::-1] for name in names]
@@ -145,6 +153,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             summary.left_out,
             summary.iteration,
             summary.photon_counts,
+            summary.photon_noise,
             summary.wide_radius,
             summary.diffused_photons_found,
             layer(*"RGBA"),
@@ -153,11 +162,16 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             layer("Radius Factor.V"),
             pairs("left", "contributed"),
             pairs("learned.left", "learned.contributed") if "learned.left" in guide else None,
+            rest,
             layer(*_HALF) if _HALF[0] in film else None,
         )
         _check_state(state, summary.render.placement)
         inspections = {entry.name: layer(*entry.layers) for entry in passes if not entry.comes_of_iterations}
         return summary, Pause(state, summary.device, summary.radius_meters, inspections)
+
+
+def _pixels(file: "OpenEXR.File", part: int) -> dict[str, np.ndarray]:
+    return {name: channel.pixels for name, channel in file.channels(part).items()}
 
 
 def _film_channels(
@@ -226,8 +240,10 @@ def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File
                 raise CheckpointError(f"{path} was written by another version of RPPM; begin anew without it")
             render = document.pop("render")
             placement = Placement(**render.pop("placement"))
-            counts = PhotonCounts(**document.pop("photon_counts"))
-            summary = CheckpointSummary(StillRender(placement=placement, **render), photon_counts=counts, **document)
+            counts = PhotonCounts(tuple(document.pop("photon_counts")["numbers"]))
+            noise = PhotonNoise(**document.pop("photon_noise"))
+            still = StillRender(placement=placement, **render)
+            summary = CheckpointSummary(still, photon_counts=counts, photon_noise=noise, **document)
             _check(summary)
             yield file, summary
     except FileNotFoundError as error:
@@ -248,6 +264,8 @@ def _check(summary: CheckpointSummary) -> None:
     settings_of_plain(summary.render.settings).validate()
     if not 0 <= summary.left_out < summary.iteration:
         raise ValueError(f"iterations from {summary.left_out} to {summary.iteration}")
+    if not summary.photon_counts.numbers:
+        raise ValueError("no numbers of photons")
 
 
 def _check_state(state: RenderState, placement: Placement) -> None:
@@ -255,8 +273,8 @@ def _check_state(state: RenderState, placement: Placement) -> None:
     height, width = state.radiance.shape[:2]
     if placement.x + width > placement.width or placement.y + height > placement.height:
         raise ValueError(f"{width} x {height} pixels at {placement.x}, {placement.y} of the frame")
-    half = [] if state.half is None else [state.half]
-    films = [state.radiance, *state.passes.values(), state.radius_factors, *half]
+    optional = [part for part in (state.half, state.rest) if part is not None]
+    films = [state.radiance, *state.passes.values(), state.radius_factors, *optional]
     counts = [state.pass_counts, state.tallies, *([] if state.learned is None else [state.learned])]
     for arrays, dtype in ((films, np.float32), (counts, np.uint32)):
         for array in arrays:

@@ -68,7 +68,7 @@ void main() {
     float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, parameters.wide_radius);
     Cells cells = cells_around(importon.position, radius, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
-    Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u);
+    Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
     uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.most_rounds;
     bool any = false;
     while (true) {
@@ -107,7 +107,7 @@ void main() {
             continue;
         any = true;
         photons[number].depth = photons[number].depth | PHOTON_CONTRIBUTED;
-        collect_splat(collected, estimate.radiance, corner > CORNERS, stands_for);
+        collect_splat(collected, number, estimate.radiance, corner > CORNERS, stands_for);
         if (parameters.light_sums != 0u) add_light(visit.x, importon, number, photons[number].flags, estimate);
     }
     if (any) write_collected(visit.x, (importon.gathers & GATHERED_BY_RAY) != 0u, collected);

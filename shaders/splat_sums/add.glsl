@@ -3,7 +3,7 @@
 // The includer declares the storage blocks of photons[] and importons[] and the members of SUM_PARAMETERS
 // (integrator/density_estimation/splat_sums.py).
 
-#include "splat_sums/sums.glsl"
+#include "splat_sums/signs.glsl"
 layout(std430, binding = 4) buffer SplatSums;
 layout(std430, binding = 5) buffer PhotonCounts;
 
@@ -11,6 +11,12 @@ void add_quanta(uint place, float quanta) {
     uvec2 added = whole_quanta(quanta);
     if (added.x > 0u && atomicAdd(sum_words[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
     if (added.y > 0u) atomicAdd(sum_words[place + 1u], added.y);
+}
+
+void add_signed_quanta(uint place, float quanta) {
+    uvec2 added = whole_quanta(quanta);
+    if (added.x > 0u && atomicAdd(photon_counts[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
+    if (added.y > 0u) atomicAdd(photon_counts[place + 1u], added.y);
 }
 
 // Threads that meet here write the same mark.
@@ -22,6 +28,8 @@ void add_splat(uint importon, uint photon, vec3 radiance, uint stands_for) {
     add_quanta(place + 2u, radiance.g * parameters.quanta);
     add_quanta(place + 4u, radiance.b * parameters.quanta);
     if (parameters.counting == 0u) return;
+    float quanta = luminance(radiance) * parameters.quanta;
+    add_signed_quanta(signed_place(importon, by_ray), photon_sign(photons[photon].path) * quanta);
     if ((photons[photon].flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u)
         atomicAdd(photon_counts[diffused_place(importon)], 1u);
     else if (!by_ray) atomicAdd(photon_counts[caustic_place(importon)], stands_for);

@@ -2,23 +2,26 @@
 // An importon collects for itself what photons add, in a thread that no other thread meets at its sums.
 // The includer declares the members of SUM_PARAMETERS (integrator/density_estimation/splat_sums.py).
 
-#include "splat_sums/sums.glsl"
+#include "splat_sums/signs.glsl"
 layout(std430, binding = 4) buffer SplatSums;
 layout(std430, binding = 5) buffer PhotonCounts;
 
-struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; uint caustic; };
+struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; uint caustic; uvec2 with_signs; };
 
 void add_words(inout uvec2 sum, uvec2 added) {
     sum.x += added.x;
     sum.y += added.y + (sum.x < added.x ? 1u : 0u);
 }
 
-void collect_splat(inout Collected collected, vec3 radiance, bool diffused, uint stands_for) {
+void collect_splat(inout Collected collected, uint photon, vec3 radiance, bool diffused, uint stands_for) {
     add_words(collected.red, whole_quanta(radiance.r * parameters.quanta));
     add_words(collected.green, whole_quanta(radiance.g * parameters.quanta));
     add_words(collected.blue, whole_quanta(radiance.b * parameters.quanta));
     if (diffused) ++collected.diffused;
     else collected.caustic += stands_for;
+    if (parameters.counting == 0u) return;
+    float quanta = luminance(radiance) * parameters.quanta;
+    add_words(collected.with_signs, whole_quanta(photon_sign(photons[photon].path) * quanta));
 }
 
 void write_words(uint place, uvec2 added) {
@@ -36,4 +39,9 @@ void write_collected(uint importon, bool by_ray, Collected collected) {
     if (parameters.counting == 0u) return;
     if (collected.diffused > 0u) photon_counts[diffused_place(importon)] += collected.diffused;
     if (!by_ray && collected.caustic > 0u) photon_counts[caustic_place(importon)] += collected.caustic;
+    place = signed_place(importon, by_ray);
+    uvec2 sum = uvec2(photon_counts[place], photon_counts[place + 1u]);
+    add_words(sum, collected.with_signs);
+    photon_counts[place] = sum.x;
+    photon_counts[place + 1u] = sum.y;
 }

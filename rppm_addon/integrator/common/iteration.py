@@ -44,6 +44,11 @@ class Iteration:
         return learns_after(self.number)
 
     @property
+    def needs_radiance(self) -> bool:
+        """Whether the radiance of pixels is asked for, by the film or to weigh its noise."""
+        return self.enters_film or self.precedes_learning
+
+    @property
     def is_tallied(self) -> bool:
         """Whether photons that contributed are counted."""
         return self.number <= LEARNING_ITERATIONS

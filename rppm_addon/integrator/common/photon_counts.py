@@ -1,54 +1,156 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many photons the iterations have, which follows what they are the noise of."""
+"""How many photons the iterations have: as many as lower the error most in a given time.
 
-from dataclasses import dataclass
+The variance of an iteration is a part v_p / n that n photons make, and the rest v_c; its cost is n c_p + c_c. Their
+product, the variance after a given time, is least with n = sqrt(v_p c_c / (v_c c_p)).
+"""
+
+import math
+from dataclasses import dataclass, field
 
 import numpy as np
 
-_FOR_PHOTONS_ALONE = 2.0
-_LEAST_PER_PIXEL, _FEWEST = 0.25, 1 << 11
-_OF_USE = 1e-3
-"""Share of a light's photons in the first iteration: where more contributed, all of them count."""
+from ...scene.declared import declared
+from .iteration import LEARNING_ITERATIONS
 
-
-def photons_of_use(by_light: np.ndarray) -> tuple[float, float]:
-    """Photons of the first iteration, and the caustic ones among them, that importons might take, of lights that shine
-    on what the camera sees.
-
-    by_light: (n, 3) of each light's photons those that importons might take, the diffused ones among them, and those
-    that contributed. Lights of which next to none did, such as lamps in other rooms, count by as much less.
-    """
-    listed, diffused, contributed = by_light.astype(np.float64).T
-    if not contributed.any():
-        return float(listed.sum()), float((listed - diffused).sum())
-    weights = np.minimum(contributed / np.maximum(_OF_USE * listed, 1.0), 1.0)
-    return float(weights @ listed), float(weights @ (listed - diffused))
-
-
-def later_photons(first: int, pixels: int, by_photons: float, listed: float) -> int:
-    """Photons of each iteration after the first, where automatic, from how many photons of the first one importons
-    might take, and how many of these show light that no ray looks for: caustic ones, or all without final gather.
-
-    The noise of gathering and shadow rays is not lessened by more photons. What was measured is in
-    docs/benchmarks/iterations.md.
-    """
-    fraction = by_photons / listed if listed else 0.0
-    wanted = round(pixels * min(max(_FOR_PHOTONS_ALONE * fraction, _LEAST_PER_PIXEL), 1.0))
-    return min(first, max(wanted, _FEWEST))
+_CAMERA_VERTEX, _SHADOW_RAY, _PHOTON_PAIR = 1.0, 0.5, 0.1
+"""Costs in units of a photon's ray with its hit: a vertex of a camera path, a shadow ray there, and a photon that a
+pixel takes. They are fixed numbers, not measured ones, so that renders are the same on every run."""
+_MOST_HALVINGS, _FEWEST = 4.0, 512
+"""Of the first iteration's photons, and the least: so many go on looking for light that none has found."""
+_STEPS = 2.0
+"""For each halving. What a frame differs in from the one before seldom changes so coarse a number, so that the photons
+and their noise stay where they are; of the best time no more than half a percent is lost."""
+_DARK = 0.01
+"""Of errors relative to squared luminance: what is added to it."""
+_AROUND, _LEFT_OUT = 2, 0.001
+"""Pixels to each side whose mean luminance errors are relative to; the part of the pixels, the worst, left out."""
+EVENNESS = 2.25
+"""What the variance of the mean of many iterations is less than that of independent ones, as their points are even:
+along edges the mean of 64 has 1.5 times less error than two halves of them tell (stages/noise_estimate.py). Photons
+have no such gain, as the guide sends them elsewhere and radii shrink."""
+_NO_NOISE = 1e-9
+"""Relative variance that counts as none."""
+_SETTLED = LEARNING_ITERATIONS.bit_length()
 
 
 @dataclass(frozen=True)
 class PhotonCounts:
-    """Photons of the first iteration, and of each later one, which are no more."""
+    """Photons of the first iteration, and of those after each iteration that later ones learn from, as far as they
+    are known."""
 
-    first: int
-    later: int
+    numbers: tuple[int, ...] = field(metadata=declared(minimum=1))
+
+    @property
+    def first(self) -> int:
+        """Photons of the first iteration."""
+        return self.numbers[0]
+
+    @property
+    def latest(self) -> int:
+        """Photons of an iteration after all that were learned from."""
+        return self.numbers[-1]
 
     def of(self, iteration: int) -> int:
         """Photons of an iteration, counted from 1."""
-        return self.later if iteration > 1 else self.first
+        learned = min((iteration - 1).bit_length(), _SETTLED)
+        return self.numbers[min(learned, len(self.numbers) - 1)]
 
     def emitted(self, skipped: int, iterations: int) -> int:
-        """In so many iterations after those skipped."""
-        has_first = skipped == 0 and iterations > 0
-        return iterations * self.later + (self.first - self.later if has_first else 0)
+        """Photons of so many iterations after those skipped."""
+        end, total = skipped + iterations, 0
+        for learned, last in enumerate([*(1 << power for power in range(_SETTLED)), end]):
+            first = 1 if learned == 0 else (1 << (learned - 1)) + 1
+            total += max(min(last, end) - max(first, skipped + 1) + 1, 0) * self.of(first)
+        return total
+
+    def followed_by(self, photons: int) -> "PhotonCounts":
+        """The same, with what the next iterations have."""
+        return PhotonCounts((*self.numbers, photons))
+
+
+@dataclass(frozen=True)
+class NoiseSamples:
+    """What an iteration found at some pixels, (rows, columns) float64 luminances each."""
+
+    rest: np.ndarray
+    """Light that comes without photons, and what gathering rays found."""
+    all: np.ndarray
+    """That and what photons bring."""
+    signed: np.ndarray
+    """What photons bring, each path with a random sign."""
+    signed_by_ray: np.ndarray
+    """The part of that which gathering rays found."""
+
+    @classmethod
+    def of(cls, values: np.ndarray) -> "NoiseSamples":
+        """From (rows, columns, 4) values: the rest, all, and the signed sums at importons and by rays."""
+        whole = np.nan_to_num(values.astype(np.float64), posinf=0.0, neginf=0.0)
+        rest, found, direct, by_ray = np.moveaxis(whole, -1, 0)
+        return cls(rest, found, direct + by_ray, by_ray)
+
+
+def _relative_mean(squares: np.ndarray, luminance: np.ndarray) -> float:
+    """The mean of squares over the squared luminance of the pixels around, without the worst few."""
+    around = np.cumsum(np.cumsum(np.pad(luminance, _AROUND + np.array([[1, 0], [1, 0]]), "edge"), 0), 1)
+    side = 2 * _AROUND + 1
+    mean = (around[side:, side:] - around[:-side, side:] - around[side:, :-side] + around[:-side, :-side]) / side**2
+    relative = np.sort((squares / (np.square(mean) + _DARK)).ravel())
+    kept = relative[: len(relative) - int(_LEFT_OUT * len(relative))]
+    return float(kept.mean()) if len(kept) else 0.0
+
+
+@dataclass(frozen=True)
+class PhotonNoise:
+    """What the iterations that are learned from have told of the noise of photons and of all else."""
+
+    photons: float = 0.0
+    """Those that the photons' part was measured with, all iterations together."""
+    photon_sum: float = 0.0
+    """The sum of their variance v_p by their number."""
+    rest_sum: float = 0.0
+    """The sum of v_c over pairs of iterations."""
+    pairs: int = 0
+    rest_photon_variance: float = 0.0
+    """What photons made of v_c in the last iteration, at the ends of gathering rays."""
+
+    def with_first(self, samples: NoiseSamples) -> "PhotonNoise":
+        """After the first iteration, whose radii are too wide to tell the photons' noise."""
+        return PhotonNoise(rest_photon_variance=_relative_mean(np.square(samples.signed_by_ray), samples.all))
+
+    def with_next(self, photons: int, samples: NoiseSamples, rest: np.ndarray, growth: float) -> "PhotonNoise":
+        """After another iteration with so many photons.
+
+        rest: that of the iteration learned from before. growth: how many times the variance of photons is larger in the
+        iterations to come, as their radii shrink.
+        """
+        by_ray = _relative_mean(np.square(samples.signed_by_ray), samples.all)
+        apart = _relative_mean(np.square(samples.rest - rest), samples.all - 0.5 * (samples.rest - rest))
+        return PhotonNoise(
+            self.photons + photons,
+            self.photon_sum + growth * photons**2 * _relative_mean(np.square(samples.signed), samples.all),
+            self.rest_sum + 0.5 * max(apart - by_ray - self.rest_photon_variance, 0.0),
+            self.pairs + 1,
+            by_ray,
+        )
+
+    def best_photons(self, first: int, photon_cost: float, rest_cost: float) -> int:
+        """Photons with which the variance after a given time is least, of at most ``first``; photon_cost: of each."""
+        if not self.pairs:
+            return first
+        photon_variance = self.photon_sum / max(self.photons, 1.0)
+        rest_variance = max(self.rest_sum / self.pairs / EVENNESS, _NO_NOISE)
+        wanted = math.sqrt(photon_variance * rest_cost / (rest_variance * max(photon_cost, 1.0)))
+        steps = round(_STEPS * math.log2(first / max(wanted, 1.0)))
+        halvings = min(max(steps / _STEPS, 0.0), _MOST_HALVINGS, max(math.log2(first / _FEWEST), 0.0))
+        return round(first * 0.5**halvings)
+
+
+def camera_cost(vertices: int, shadow_rays: int) -> float:
+    """Cost of an iteration's camera paths, in photon rays, from their vertices and the shadow rays of each."""
+    return vertices * (_CAMERA_VERTEX + _SHADOW_RAY * shadow_rays)
+
+
+def photon_cost(photons: int, segments: int, pairs: int) -> float:
+    """Cost of one of so many photons, in photon rays, from the rays of all and the pairs of photons and pixels."""
+    return (segments + _PHOTON_PAIR * pairs) / max(photons, 1)

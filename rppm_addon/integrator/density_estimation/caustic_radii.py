@@ -23,6 +23,9 @@ from .splat_sums import SplatSums
 
 Record("NarrowParameters", count="uint", iteration="uint", most_factor="float", expected="float")
 
+_LEAST_FRACTION = 0.25
+"""Of the first iteration's photons: disks of fewer hold too few to tell how dense they lie."""
+
 
 class CausticRadii(BufferSet):
     """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
@@ -39,12 +42,14 @@ class CausticRadii(BufferSet):
         return self._factors.of(band)
 
     def narrow(
-        self, sums: SplatSums, band: Band, iteration: Iteration, radii: Radii, fewer: float, timers: StageTimers
+        self, sums: SplatSums, band: Band, iteration: Iteration, radii: Radii, fraction: float, timers: StageTimers
     ) -> None:
         """Learn from the photons that a band's pixels took in an iteration.
 
-        fewer: photons of the next over those of this one.
+        fraction: photons of the iteration over those of the first. Of fewer photons disks hold fewer: that makes
+        noise, which is weighed (common/photon_counts.py), and no wider blur.
         """
+        held = max(fraction, _LEAST_FRACTION)
         with timers.stage("learning"):
             self._program.run(
                 band.pixel_count,
@@ -53,7 +58,7 @@ class CausticRadii(BufferSet):
                     "count": band.pixel_count,
                     "iteration": iteration.number,
                     "most_factor": radii.most_factor,
-                    "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 / (fewer * sums.photons_for_one),
+                    "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 * held / sums.photons_for_one,
                 },
             )
 

@@ -77,7 +77,7 @@ class DensityEstimator(BufferSet):
         self.sums.count_in(
             radiance_quantum(photons.photon_flux, max(photons.radii.caustic, photons.radii.wide)),
             iteration.roulette_seed if settings.use_splat_roulette else 0,
-            iteration.precedes_learning,
+            iteration.roulette_seed if iteration.precedes_learning else 0,
         )
 
     def prepare(self) -> None:

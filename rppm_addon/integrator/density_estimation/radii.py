@@ -157,7 +157,7 @@ def photons_found_by_ray(counts: np.ndarray) -> float:
     return float(np.median(lit)) if len(lit) else 0.0
 
 
-def fitted_wide_radius(radius: float, expected: int, found: float) -> float:
+def fitted_wide_radius(radius: float, expected: float, found: float) -> float:
     """The radius, meters, with which half of the view, or of the lit ends of gathering rays, would find ``expected``
     photons or more.
 

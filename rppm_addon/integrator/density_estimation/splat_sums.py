@@ -33,7 +33,7 @@ StorageBlock("LightSums", "uint light_words[];")
 StorageBlock("GroupSums", "uint group_words[];")
 
 _PHOTON_QUANTA = 1 << 24
-_SUM_WORDS = 12
+_SUM_WORDS, _COUNT_WORDS = 12, 6
 """Of a pixel (shaders/splat_sums/sums.glsl)."""
 _SCATTERED_SUMS, _CAUSTICS_SUMS = 6, 2
 
@@ -93,7 +93,7 @@ class SplatSums(BufferSet):
 
     remedy = "lower the resolution"
     _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes))
-    _photon_counts = StorageBuffer("photon counts", "uvec2", band_pixels)
+    _photon_counts = StorageBuffer("photon counts", "uint", lambda sizes: _COUNT_WORDS * band_pixels(sizes))
     _light_sums = StorageBuffer("gathered radiance of light passes", "uint", _light_words)
     _group_sums = StorageBuffer("gathered radiance of light groups", "uint", _group_words)
 
@@ -102,11 +102,11 @@ class SplatSums(BufferSet):
         self.kept = LightSum.of(sizes)
         """Of the light sums."""
         self._groups = len(sizes.light_groups)
-        self.count_in(1.0, 0, False)
+        self.count_in(1.0, 0, 0)
 
-    def count_in(self, quantum: float, roulette: int, counting: bool) -> None:
+    def count_in(self, quantum: float, roulette: int, counting: int) -> None:
         """Set what the sums count in, W/(m^2 sr), the seed of the roulette (0 keeps all pairs of a photon and a pixel),
-        and whether to count the photons that pixels take."""
+        and the seed of the photons' signs (0 neither counts the photons that pixels take nor sums them with signs)."""
         self.quantum = quantum
         self.counting = counting
         self.parameters = {
@@ -122,7 +122,7 @@ class SplatSums(BufferSet):
     def left_alone(self) -> Iterator[None]:
         """What is splatted meanwhile adds nothing."""
         parameters = self.parameters
-        self.parameters = parameters | {"quanta": 0.0, "counting": False}
+        self.parameters = parameters | {"quanta": 0.0, "counting": 0}
         try:
             yield
         finally:
@@ -173,10 +173,18 @@ class SplatSums(BufferSet):
 
     @property
     def photon_counts(self) -> moderngl.Buffer:
-        """Words at diffused_place and caustic_place (shaders/splat_sums/sums.glsl)."""
+        """Words at diffused_place, caustic_place and signed_place (shaders/splat_sums/sums.glsl)."""
         return self._photon_counts.buffer
 
     def photons_taken(self, count: int) -> np.ndarray:
         """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:
         diffused ones, and caustic ones but for those at the ends of gathering rays."""
-        return self._photon_counts.read(np.uint32, 2 * count).reshape(-1, 2) * self.photons_for_one
+        return self._counted(count)[:, :2] * self.photons_for_one
+
+    def signed(self, count: int) -> np.ndarray:
+        """(count, 2) int64 quanta of luminance of the band's first pixels, each photon path with a random sign: what
+        their importons took, what their rays found."""
+        return np.ascontiguousarray(self._counted(count)[:, 2:]).view(np.int64)
+
+    def _counted(self, count: int) -> np.ndarray:
+        return self._photon_counts.read(np.uint32, _COUNT_WORDS * count).reshape(-1, _COUNT_WORDS)

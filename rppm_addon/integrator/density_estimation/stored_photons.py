@@ -31,7 +31,6 @@ ESTIMATE_PARAMETERS = {
 """Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
 
 Record("StoredParameters", count="uint", takes_direct="uint")
-Record("LightPhotonsParameters", count="uint", light_count="uint")
 
 
 class DirectPhotons(enum.IntEnum):
@@ -51,12 +50,10 @@ class PhotonList(BufferSet):
 
     remedy = "lower the photons per iteration or the photon path length"
     _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec3")
-    _by_light = StorageBuffer("photons by light", "uint")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._program = library.compute("stored_photons/list.comp")
-        self._count_by_light = library.compute("stored_photons/count_by_light.comp")
         self.count = self.diffused_count = self.indirect_count = 0
 
     @property
@@ -84,25 +81,6 @@ class PhotonList(BufferSet):
             {"count": slots, "takes_direct": takes_direct.value},
         )
         self.count, self.diffused_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
-
-    def by_light(self, photons: moderngl.Buffer, lights: moderngl.Buffer, light_count: int) -> np.ndarray:
-        """(light_count, 3) uint32 of each light's photons, once they met importons: those listed, the diffused ones
-        among them, and those that contributed.
-
-        lights: LIGHT records, by which the photons left. Waits for the device.
-        """
-        self._by_light.upload(np.zeros(3 * light_count, np.uint32))
-        self._count_by_light.run(
-            self.count,
-            {
-                "Photons": photons,
-                "StoredPhotons": self._numbers.buffer,
-                "Lights": lights,
-                "PhotonsByLight": self._by_light.buffer,
-            },
-            {"count": self.count, "light_count": light_count},
-        )
-        return self._by_light.read(np.uint32, 3 * light_count).reshape(-1, 3).copy()
 
 
 @dataclass(frozen=True)

@@ -88,7 +88,7 @@ class DirectLight(BufferSet):
         To be called before the paths scatter on. Nothing is added where photons bring direct light, or where none of
         it would come to the film.
         """
-        if context.settings.direct_light is not DirectLightMode.RAYS or not iteration.enters_film:
+        if context.settings.direct_light is not DirectLightMode.RAYS or not iteration.needs_radiance:
             return
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):

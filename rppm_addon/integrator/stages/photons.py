@@ -258,10 +258,13 @@ class Photons(BufferSet):
         sums = self._sums.read(FLUX_SUMS.dtype, groups)
         return {name: float(sums[name].sum(dtype=np.float64)) for name in FLUX_NAMES}
 
+    def count_segments(self) -> int:
+        """How many rays the photons of the last iteration have had. Waits for the device."""
+        return int(self._range.read(np.uint32, 2)[1])
+
     def read(self) -> np.ndarray:
         """(segments, photon_count) PHOTON records of the last iteration by segment and path: zeros where none is."""
-        end = int(self._range.read(np.uint32, 2)[1])
-        records = self.photons.read(PHOTON.dtype, end)
+        records = self.photons.read(PHOTON.dtype, self.count_segments())
         records = records[records["flags"] & PhotonFlag.ACTIVE != 0]
         segments, paths = np.divmod(records["path"], 1 << PHOTON_SEGMENT_SHIFT)
         result = np.zeros((int(segments.max(initial=0)) + 1, self.photon_count), PHOTON.dtype)

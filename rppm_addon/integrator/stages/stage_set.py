@@ -27,6 +27,7 @@ from .light_groups import LightGroups
 from .light_passes import LightPasses
 from .media import Media
 from .noise_estimate import NoiseEstimate
+from .photon_noise import PhotonNoise
 from .photons import Photons
 from .primary_rays import PrimaryRays
 from .shadow_catcher import ShadowCatcher
@@ -42,7 +43,7 @@ GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
     "subsurface": (Subsurface,),
     "media": (Media,),
     "density estimation": (DensityEstimator,),
-    "passes": (Film, LightPasses, LightGroups, CausticRadii, NoiseEstimate),
+    "passes": (Film, LightPasses, LightGroups, CausticRadii, NoiseEstimate, PhotonNoise),
 }
 """How memory is reported: stages by group."""
 
@@ -73,6 +74,7 @@ class StageSet(BufferSet):
     light_groups = Part(LightGroups)
     caustic_radii = Part(CausticRadii)
     noise_estimate = Part(NoiseEstimate)
+    photon_noise = Part(PhotonNoise)
 
     def __init__(
         self, context: Context, library: ProgramLibrary, scene: Scene, demands: ViewportDemands = NO_DEMANDS

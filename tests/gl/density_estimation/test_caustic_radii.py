@@ -27,28 +27,30 @@ def many_photons(**settings: object) -> Scene:
     return dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, **values))
 
 
-@pytest.mark.parametrize("roulette", [0, 7])
-def test_disks_shrink_to_what_they_should_hold(context, library, roulette, monkeypatch):
+@pytest.mark.parametrize(
+    ("roulette", "fraction", "held"), [(0, 1.0, 1.0), (7, 1.0, 1.0), (0, 0.5, 0.5), (0, 0.1, 0.25)]
+)
+def test_disks_shrink_to_what_they_should_hold(context, library, roulette, fraction, held, monkeypatch):
     """The closed form, band by band and iteration by iteration; Eq. 2's shrinkage is no reason to shrink more."""
     pixels = 40
     monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", 12)
     sizes = StageSizes(1, pixels)
     assert len(sizes.bands) == 4
     radii, sums = CausticRadii(context, library, sizes), SplatSums(context, library, sizes)
-    sums.count_in(1.0, roulette, True)
+    sums.count_in(1.0, roulette, 1)
     timers = StageTimers(context)
     random = np.random.default_rng(4)
     most = 3.0
     expected = np.full(pixels, most)
     for iteration in (1, 2, 4):
         shrunk = shrinkage(iteration, 0.7)
-        counts = random.poisson(np.linspace(0, 60, pixels)[:, None], (pixels, 2)).astype(np.uint32)
+        counts = random.poisson(np.linspace(0, 60, pixels)[:, None], (pixels, 6)).astype(np.uint32)
         for rows in sizes.bands:
             sums.photon_counts.write(counts[rows.first_row : rows.first_row + rows.rows].tobytes())
             of_iteration = Radii(0.0, 1.0, 1.0, 1.0, most, shrunk)
-            radii.narrow(sums, rows, Iteration(iteration, seed=0), of_iteration, 1.0, timers)
-        held = counts[:, 1] * (2 if roulette else 1) / shrunk**2
-        expected *= np.minimum(np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.maximum(held, 1.0)), 1.0)
+            radii.narrow(sums, rows, Iteration(iteration, seed=0), of_iteration, fraction, timers)
+        taken = counts[:, 1] * (2 if roulette else 1) / shrunk**2 / held
+        expected *= np.minimum(np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.maximum(taken, 1.0)), 1.0)
         expected = np.maximum(expected, 1.0)
         np.testing.assert_allclose(radii.read()[:, 0], expected, rtol=1e-5)
     assert expected.min() == 1.0 and expected.max() == most and np.sum((expected > 1.0) & (expected < most)) > 3

@@ -50,7 +50,7 @@ class Device:
         blocks = {"Photons": buffers[0].buffer, "PhotonRange": buffers[3].buffer}
         listed.collect(blocks, buffers[2].buffer, len(photons), DirectPhotons.ALL)
         sums = SplatSums(self._context, self._library, sizes)
-        sums.count_in(1e-6, 0, True)
+        sums.count_in(1e-6, 0, 1)
         sums.clear()
         grid = PhotonGrid(self._context, self._library, sizes)
         stored = StoredPhotons(

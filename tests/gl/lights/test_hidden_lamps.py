@@ -36,15 +36,20 @@ def photons_of_lamps(mapper) -> int:
 
 
 def test_the_light_that_is_seen_keeps_its_photons(mapper):
-    counts = []
+    noises, counts = [], []
     for lamps in (0, LAMPS):
         mapper.build(caustic_scene(lamps))
         for _ in range(3):
             mapper.iterate()
-        counts.append(mapper.learning.photon_counts.later)
-    print(counts, photons_of_lamps(mapper))
+        noise = mapper.learning.photon_noise
+        noises.append(noise.photon_sum / noise.photons)
+        counts.append(mapper.learning.photon_counts.latest)
+    print(noises, counts, photons_of_lamps(mapper))
     assert counts[0] > 0.3 * COLUMNS * ROWS  # caustics ask for many
-    assert counts[1] == pytest.approx(counts[0], rel=0.05)
+    # A seventh of the second iteration's photons still goes to the lamps, of which nobody sees any.
+    assert noises[1] == pytest.approx(noises[0], rel=0.25)
+    # Shadow rays to the lamps make more noise than all photons do.
+    assert 512 < counts[1] < counts[0]
     assert photons_of_lamps(mapper) < 0.2 * counts[1]
 
 
@@ -55,4 +60,4 @@ def test_lamps_that_the_next_frame_shows_are_found(mapper):
     for _ in range(3):
         mapper.iterate()
     print(mapper.learning.photon_counts, photons_of_lamps(mapper))
-    assert photons_of_lamps(mapper) > 0.8 * mapper.learning.photon_counts.later
+    assert photons_of_lamps(mapper) > 0.8 * mapper.learning.photon_counts.latest

@@ -73,11 +73,12 @@ def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
         scene = everything_moves(scene, 1.0)
     mapper.build(scene)
     assert mapper.photons_emitted(0) == 0
-    early = [run_until(mapper, stop) for stop in (1, 2)]
+    early = [run_until(mapper, stop) for stop in (1, 2, 7, 16)]
+    assert [state.rest is None for state in early] == [False, False, False, True]
     whole = run_until(mapper, LAST)
-    first, later = scene.photon_count, whole.photon_counts.later
+    first, later = scene.photon_count, whole.photon_counts.latest
     assert 256 < later < first == whole.photon_counts.first
-    assert mapper.photons_emitted(3) == first + 2 * later
+    assert mapper.photons_emitted(3) == sum(whole.photon_counts.of(number) for number in (1, 2, 3)) < 3 * first
     assert sum(mapper.source_photons.values()) == mapper.read_photons().shape[1] == later
     for state in early:
         other_mapper.build(scene)
@@ -87,7 +88,8 @@ def test_automatic_photons_are_those_of_the_whole(mapper, other_mapper, moving):
     for _ in other_mapper.skip(LEARNING_ITERATIONS + 1):
         pass
     part = run_until(other_mapper, LAST)
-    assert_same_state(part, whole, "iteration", "photon_counts", "wide_radius", "radius_factors", "tallies", "learned")
+    names = "iteration", "photon_counts", "photon_noise", "wide_radius", "radius_factors", "tallies", "learned"
+    assert_same_state(part, whole, *names)
     assert other_mapper.photons_emitted(3) == 3 * later
 
 
@@ -99,7 +101,7 @@ def test_photons_stay_as_many_where_all_light_is_theirs(mapper):
     for gathers in (True, False):
         scene.settings = dataclasses.replace(scene.settings, photons=0, use_final_gather=gathers)
         mapper.build(scene)
-        later[gathers] = run_until(mapper, 1).photon_counts.later
+        later[gathers] = run_until(mapper, 2).photon_counts.latest
     assert later[True] < later[False] == scene.photon_count == 96 * 96
 
 
@@ -160,6 +162,15 @@ def test_a_state_of_another_scene_is_refused(mapper):
     mapper.build(smaller)
     with pytest.raises(CheckpointError, match="16x16 pixels, not 7x16"):
         mapper.resume(state)
+    automatic = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, photons=0))
+    mapper.build(automatic)
+    mapper.iterate()
+    with pytest.raises(CheckpointError, match="samples"):
+        mapper.resume(dataclasses.replace(mapper.state(), rest=np.zeros((3, 3), np.float32)))
+    mapper.build(automatic)
+    mapper.iterate()
+    with pytest.raises(CheckpointError, match="noise of photons"):
+        mapper.resume(dataclasses.replace(mapper.state(), rest=None))
     fewer = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, photons=100))
     mapper.build(fewer)
     with pytest.raises(CheckpointError, match="cells"):

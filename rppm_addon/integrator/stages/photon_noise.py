@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Samples of an iteration's pixels, which tell the noise that photons make from the rest (common/photon_counts.py)."""
+
+import math
+
+import numpy as np
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.stage_sizes import StageSizes
+from ..density_estimation.radii import Radii
+from ..density_estimation.splat_sums import SplatSums
+from ..device_scene.stage_context import StageContext
+from .final_gather import FinalGather
+from .importons import Importons
+
+Record(
+    "PhotonNoiseParameters",
+    count="uint",
+    width="uint",
+    columns="uint",
+    first_row="uint",
+    step="uint",
+    gathers="uint",
+    quantum="float",
+)
+StorageBlock("NoiseSamples", "vec4 noise_samples[];")
+
+_MOST_SAMPLES = 1 << 16
+
+
+def sample_step(width: int, height: int) -> int:
+    """Of a film's rows and columns every so many have samples."""
+    return math.ceil(math.sqrt(width * height / _MOST_SAMPLES))
+
+
+def _samples(sizes: StageSizes) -> int:
+    step = sample_step(sizes.width, sizes.height)
+    return math.ceil(sizes.width / step) * math.ceil(sizes.bands[0].rows / step)
+
+
+class PhotonNoise(BufferSet):
+    """Reads samples of bands, and counts the vertices of camera paths, in iterations that later ones learn from."""
+
+    remedy = "lower the resolution"
+    _samples = StorageBuffer("samples of noise", "vec4", _samples)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._split = library.compute("photon_noise/split.comp")
+        self._join = library.compute("photon_noise/join.comp")
+        self.step = sample_step(sizes.width, sizes.height)
+        self.shape = math.ceil(sizes.height / self.step), math.ceil(sizes.width / self.step)
+        """Rows and columns of the samples of all bands."""
+        self.vertices = 0
+        """Vertices of the iteration's camera paths so far."""
+
+    def begin(self) -> None:
+        """Forget the iteration before."""
+        self.vertices = 0
+
+    def count(self, importons: Importons, iteration: Iteration) -> None:
+        """Count the vertices of a segment of camera paths. Waits for the device in iterations that are learned from."""
+        if iteration.precedes_learning:
+            self.vertices += importons.living.read_count()
+
+    def sample(
+        self,
+        context: StageContext,
+        importons: Importons,
+        gather: FinalGather,
+        sums: SplatSums,
+        band: Band,
+        iteration: Iteration,
+        radii: Radii,
+    ) -> np.ndarray:
+        """(rows, columns, 4) float32 luminances of a band's samples, with the film's exposure, for NoiseSamples.of.
+
+        To be asked for when nothing needs the band's radiances any more. Waits for the device.
+        """
+        first_row = -band.first_row % self.step
+        rows, columns = max(math.ceil((band.rows - first_row) / self.step), 0), math.ceil(band.columns / self.step)
+        parameters = {
+            "width": band.columns,
+            "columns": columns,
+            "first_row": first_row,
+            "step": self.step,
+            "gathers": context.gathers,
+            "quantum": sums.quantum,
+        }
+        with context.timers.stage("learning"):
+            self._split.run(
+                band.pixel_count,
+                {
+                    "Radiances": importons.radiances.buffer,
+                    "SplatSums": sums.buffer,
+                    "FoundRadiances": gather.radiances.buffer,
+                    "PhotonCounts": sums.photon_counts,
+                    "NoiseSamples": self._samples.buffer,
+                },
+                {**parameters, "count": band.pixel_count},
+            )
+            if context.gathers:
+                gather.share_found(gather.radiances.buffer, importons.radiances.buffer, band, iteration, radii)
+            self._join.run(
+                rows * columns,
+                {"Radiances": importons.radiances.buffer, "NoiseSamples": self._samples.buffer},
+                {**parameters, "count": rows * columns},
+            )
+            found = self._samples.read(np.float32, 4 * rows * columns).reshape(rows, columns, 4)
+            return found * np.float32(context.scene.exposure)

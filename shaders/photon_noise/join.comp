@@ -1,0 +1,19 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Adds to the samples of pixels what gathering rays found of photons with random signs, once it was shared.
+
+layout(local_size_x = 64) in;
+
+#include <PhotonNoiseParameters>
+#include "common/invocation.glsl"
+#include "common/luminance.glsl"
+layout(std140, binding = 0) uniform Parameters { PhotonNoiseParameters parameters; };
+layout(std430, binding = 0) readonly buffer Radiances;
+layout(std430, binding = 1) buffer NoiseSamples;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count) return;
+    uvec2 pixel = parameters.step * uvec2(index % parameters.columns, index / parameters.columns);
+    noise_samples[index].w = luminance(radiances[(parameters.first_row + pixel.y) * parameters.width + pixel.x].rgb);
+}
