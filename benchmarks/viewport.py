@@ -5,8 +5,9 @@
 
 Prints tables and, with --save, writes the pictures' sheet and the figures. Scenes are those below, samples of docs/ by
 their names, and .blend files. A second is one of all cores (machine.Clock), so that other programs beside change
-little; shaders are compiled before, but for --cold. Cycles renders stills of as many samples as it has by then, its
-set-up of a scene included, without adaptive sampling and denoising. Needs the bpy module and the bench extra.
+little; shaders are compiled before (first_picture.py measures without). Cycles renders stills of as many samples as it
+has by then, its set-up of a scene included, without adaptive sampling and denoising. Needs the bpy module and the bench
+extra.
 """
 
 import argparse
@@ -14,7 +15,6 @@ import dataclasses
 import json
 import math
 import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -294,49 +294,15 @@ def save(rows: list[dict[str, object]], machine: dict[str, object], folder: Path
     (folder / "figures.json").write_text(json.dumps({"machine": machine, "scenes": scenes}, indent=2))
 
 
-def first_picture_cold(name: str, size: tuple[int, int]) -> str:
-    """What this program says of a scene when nothing is compiled; in a process of its own."""
-    with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "benchmarks.viewport", "--first-only", "--scenes", name]
-        command += ["--size", f"{size[0]}x{size[1]}"]
-        environment = os.environ | {"RPPM_CACHE": folder, "MESA_SHADER_CACHE_DIR": folder}
-        return subprocess.run(command, cwd=ROOT, env=environment, check=True, capture_output=True, text=True).stdout
-
-
-def first_pictures(name: str, size: tuple[int, int]) -> str:
-    """Seconds of all cores to a first look, to the first rendered picture, and to that of another viewport."""
-    context = Context.create()
-    library, clock = ProgramLibrary(context), Clock(context)
-    load(name)
-    scene = export_scene(bpy.context.evaluated_depsgraph_get())
-    scene.camera = camera_at_resolution(scene.camera, *size)
-    window, found = Window(context, library, clock), []
-    for _ in range(2):
-        started = clock.now()
-        window.viewing.show(scene, 1, False)
-        while not window.viewing._rendered:
-            window.viewing.run_slice()
-        found.append([moment - started for moment, _, _ in window.pictures])
-        window.reopen()
-    window.viewing.release()
-    return f"| {Path(name).stem} | {found[0][0]:.2f} | {found[0][-1]:.1f} | {found[1][0]:.2f} |"
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--scenes", nargs="+", default=[*MADE, "pool", "first_light"], metavar="NAME")
     parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), default=(192, 108))
     parser.add_argument("--seconds", type=lambda text: [float(part) for part in text.split(",")], default=[2, 5, 10])
     parser.add_argument("--reference", type=float, default=60.0, metavar="SECONDS", help="of the reference")
-    parser.add_argument("--cold", action="store_true", help="measure first pictures with nothing compiled")
-    parser.add_argument("--first-only", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--save", type=Path, metavar="FOLDER")
     options = parser.parse_args()
     rppm_addon.register()
-    if options.cold or options.first_only:
-        for name in options.scenes:
-            print(first_pictures(name, options.size) if options.first_only else first_picture_cold(name, options.size))
-        return
     context = Context.create()
     library = ProgramLibrary(context)
     rows: list[dict[str, object]] = []
