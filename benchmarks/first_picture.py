@@ -17,7 +17,6 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import bpy
@@ -35,8 +34,8 @@ from rppm_addon.session.process.viewing import Viewing
 
 from . import ROOT
 
-_WAYS = ("viewport", "F12")
 _RESULT = "first pictures: "
+_PICTURES = ("first", "true light")
 
 
 class Found:
@@ -56,8 +55,7 @@ class Found:
 
 
 def look(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
-    """What a viewport shows of a scene."""
-    viewing: Viewing | None = None
+    """Seconds to the first pictures of a scene in a viewport."""
 
     def take(kind: str, **content: object) -> None:
         if kind == "frame":
@@ -73,8 +71,7 @@ def look(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
 
 
 def render(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
-    """What F12 shows of a scene."""
-    rendering: Rendering | None = None
+    """Seconds to the first pictures of a scene that F12 renders."""
 
     def take(kind: str, **content: object) -> None:
         if kind in ("picture", "result"):
@@ -93,7 +90,7 @@ def render(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
     return found
 
 
-_MEASURES: dict[str, Callable[[Context, ProgramLibrary, Scene], Found]] = dict(zip(_WAYS, (look, render), strict=True))
+_MEASURES = {"viewport": look, "F12": render}
 
 
 def measure_here(path: str, way: str, size: tuple[int, int]) -> None:
@@ -120,7 +117,7 @@ def measure(path: str, way: str, size: tuple[int, int], caches: str) -> tuple[fl
 def row(path: str, size: tuple[int, int]) -> str:
     """A scene's row of the table."""
     cells = [Path(path).stem]
-    for way in _WAYS:
+    for way in _MEASURES:
         with tempfile.TemporaryDirectory() as caches:
             for _ in ("empty", "full"):
                 cells += [f"{seconds:.2f}" for seconds in measure(path, way, size, caches)]
@@ -131,14 +128,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", metavar="FILE.blend")
     parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), default=(320, 180))
-    parser.add_argument("--way", choices=_WAYS, help=argparse.SUPPRESS)
+    parser.add_argument("--way", choices=_MEASURES, help=argparse.SUPPRESS)
     options = parser.parse_args()
     rppm_addon.register()
     if options.way is not None:
         measure_here(options.files[0], options.way, options.size)
         return
-    states = [f"{way}, {caches} caches: {what}" for way in _WAYS for caches in ("empty", "full") for what in
-              ("first", "true light")]  # fmt: skip
+    caches = ("empty", "full")
+    states = [f"{way}, {state} caches: {what}" for way in _MEASURES for state in caches for what in _PICTURES]
     print("| scene | " + " | ".join(states) + " |")
     print("|---|" + "--:|" * len(states))
     for path in options.files:

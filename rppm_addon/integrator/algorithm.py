@@ -90,11 +90,11 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
 def _read_findings(
     context: StageContext, stages: StageSet, learning: Learning, band: Band, iteration: Iteration, radii: Radii
 ) -> BandFindings:
-    """What a band tells of photons; nothing needs its radiances any more."""
+    """Read what a band tells of its photons, once nothing needs the radiances of the band any more."""
     sums, fraction = stages.density_estimator.sums, learning.photon_fraction(iteration)
     taken = sums.photons_taken(band.pixel_count)
     stages.caustic_radii.narrow(sums, band, iteration, radii, fraction, context.timers)
-    if not learning.weighs_noise:
+    if not iteration.weighs_noise:
         return BandFindings(taken)
     gather, importons = stages.final_gather, stages.importons
     return BandFindings(taken, stages.photon_noise.sample(context, importons, gather, sums, band, iteration, radii))
@@ -105,5 +105,5 @@ def _learn(
 ) -> None:
     if iteration.is_tallied:
         learning.tally(context, stages.photons, findings)
-    if iteration.precedes_learning and learning.weighs_noise:
+    if iteration.weighs_noise:
         learning.weigh_noise(iteration, stages.photons, stages.photon_noise.vertices, findings)

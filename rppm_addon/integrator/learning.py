@@ -10,7 +10,7 @@ from ..scene.meshes import RayVisibility
 from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.known import known
-from .common.photon_counts import NoiseSamples, PhotonCounts, PhotonNoise, camera_cost, photon_cost
+from .common.photon_counts import NoiseSamples, NoiseVariances, PhotonCounts, camera_cost, photon_cost
 from .density_estimation.radii import (
     Radii,
     expected_photons,
@@ -81,7 +81,7 @@ class Learning:
         columns, rows = camera.resolution
         of_disks = max(_PHOTONS_OF_DISKS * columns * rows, _FEWEST_OF_DISKS)
         self._photons_of_disks = min(of_disks, context.scene.photon_count)
-        self.photon_noise = PhotonNoise()
+        self.photon_noise = NoiseVariances()
         self.rest: np.ndarray | None = None
         """(rows, columns) float32, where photons are automatic: luminance of samples of the last iteration that was
         learned from, without that of photons."""

@@ -103,7 +103,8 @@ class ProgressivePhotonMapper:
         if self.iteration > 1 and learns_after(self.iteration - 1):
             self.learning.learn(self.device_scene.context, self.iteration - 1)
         seed, shadow_rays = self.scene.settings.seed, self._demands.shadow_rays
-        iteration = Iteration(self.iteration, seed, photons, self._skipped, 0.0, shadow_rays)
+        weighs_noise = self.learning.weighs_noise and learns_after(self.iteration)
+        iteration = Iteration(self.iteration, seed, photons, self._skipped, 0.0, shadow_rays, weighs_noise)
         if self.device_scene.moves:
             self.device_scene.move_to(iteration)
             yield

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..scene.errors import CheckpointError
 from .common.iteration import LEARNING_ITERATIONS
-from .common.photon_counts import PhotonCounts, PhotonNoise
+from .common.photon_counts import NoiseVariances, PhotonCounts
 from .learning import Learning
 from .lights.lights import Lights
 from .stages.stage_set import StageSet
@@ -23,7 +23,7 @@ class RenderState:
     """The last that was run, counted from 1: ``iteration - skipped`` are in the film. The radii follow (Eq. 2)."""
     photon_counts: PhotonCounts
     """Where automatic, those that are known so far."""
-    photon_noise: PhotonNoise
+    photon_noise: NoiseVariances
     """What the photons to come are chosen by, where automatic."""
     wide_radius: float
     """Of the first iteration, meters: what diffused photons are spread over."""

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 
-from ..integrator.common.photon_counts import PhotonCounts, PhotonNoise
+from ..integrator.common.photon_counts import NoiseVariances, PhotonCounts
 from ..integrator.state import RenderState
 from ..pictures import Placement, renamed_when_whole
 from ..scene.declared import declared
@@ -69,7 +69,7 @@ class CheckpointSummary:
     left_out: int
     iteration: int
     photon_counts: PhotonCounts
-    photon_noise: PhotonNoise
+    photon_noise: NoiseVariances
     wide_radius: float
     diffused_photons_found: float | None
     device: str
@@ -241,7 +241,7 @@ def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File
             render = document.pop("render")
             placement = Placement(**render.pop("placement"))
             counts = PhotonCounts(tuple(document.pop("photon_counts")["numbers"]))
-            noise = PhotonNoise(**document.pop("photon_noise"))
+            noise = NoiseVariances(**document.pop("photon_noise"))
             still = StillRender(placement=placement, **render)
             summary = CheckpointSummary(still, photon_counts=counts, photon_noise=noise, **document)
             _check(summary)

@@ -27,6 +27,8 @@ class Iteration:
     """W of a photon of the world that contributes, where photons share the world's direct light with rays; else 0."""
     shadow_rays: int = 1
     """Of each vertex of a camera path."""
+    weighs_noise: bool = False
+    """Whether the noise that photons make is told from the rest, for later iterations to choose their photons by."""
 
     @property
     def number_in_film(self) -> int:
@@ -45,8 +47,8 @@ class Iteration:
 
     @property
     def needs_radiance(self) -> bool:
-        """Whether the radiance of pixels is asked for, by the film or to weigh its noise."""
-        return self.enters_film or self.precedes_learning
+        """Whether the film or the choice of the number of photons reads the radiance of pixels."""
+        return self.enters_film or self.weighs_noise
 
     @property
     def is_tallied(self) -> bool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many photons the iterations have: as many as lower the error most in a given time.
+"""Choice of the number of photons of each iteration: as many as lower the error most in a given time.
 
 The variance of an iteration is a part v_p / n that n photons make, and the rest v_c; its cost is n c_p + c_c. Their
 product, the variance after a given time, is least with n = sqrt(v_p c_c / (v_c c_p)).
@@ -101,7 +101,7 @@ def _relative_mean(squares: np.ndarray, luminance: np.ndarray) -> float:
 
 
 @dataclass(frozen=True)
-class PhotonNoise:
+class NoiseVariances:
     """What the iterations that are learned from have told of the noise of photons and of all else."""
 
     photons: float = 0.0
@@ -114,11 +114,11 @@ class PhotonNoise:
     rest_photon_variance: float = 0.0
     """What photons made of v_c in the last iteration, at the ends of gathering rays."""
 
-    def with_first(self, samples: NoiseSamples) -> "PhotonNoise":
+    def with_first(self, samples: NoiseSamples) -> "NoiseVariances":
         """After the first iteration, whose radii are too wide to tell the photons' noise."""
-        return PhotonNoise(rest_photon_variance=_relative_mean(np.square(samples.signed_by_ray), samples.all))
+        return NoiseVariances(rest_photon_variance=_relative_mean(np.square(samples.signed_by_ray), samples.all))
 
-    def with_next(self, photons: int, samples: NoiseSamples, rest: np.ndarray, growth: float) -> "PhotonNoise":
+    def with_next(self, photons: int, samples: NoiseSamples, rest: np.ndarray, growth: float) -> "NoiseVariances":
         """After another iteration with so many photons.
 
         rest: that of the iteration learned from before. growth: how many times the variance of photons is larger in the
@@ -126,7 +126,7 @@ class PhotonNoise:
         """
         by_ray = _relative_mean(np.square(samples.signed_by_ray), samples.all)
         apart = _relative_mean(np.square(samples.rest - rest), samples.all - 0.5 * (samples.rest - rest))
-        return PhotonNoise(
+        return NoiseVariances(
             self.photons + photons,
             self.photon_sum + growth * photons**2 * _relative_mean(np.square(samples.signed), samples.all),
             self.rest_sum + 0.5 * max(apart - by_ray - self.rest_photon_variance, 0.0),

@@ -45,7 +45,7 @@ def _samples(sizes: StageSizes) -> int:
 
 
 class PhotonNoise(BufferSet):
-    """Reads samples of bands, and counts the vertices of camera paths, in iterations that later ones learn from."""
+    """Reads samples of bands, and counts the vertices of camera paths, in iterations that weigh noise."""
 
     remedy = "lower the resolution"
     _samples = StorageBuffer("samples of noise", "vec4", _samples)
@@ -65,8 +65,8 @@ class PhotonNoise(BufferSet):
         self.vertices = 0
 
     def count(self, importons: Importons, iteration: Iteration) -> None:
-        """Count the vertices of a segment of camera paths. Waits for the device in iterations that are learned from."""
-        if iteration.precedes_learning:
+        """Count the vertices of a segment of camera paths. Waits for the device in iterations that weigh noise."""
+        if iteration.weighs_noise:
             self.vertices += importons.living.read_count()
 
     def sample(

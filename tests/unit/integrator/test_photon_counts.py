@@ -8,8 +8,8 @@ from rppm_addon.integrator.common.iteration import learns_after
 from rppm_addon.integrator.common.photon_counts import (
     EVENNESS,
     NoiseSamples,
+    NoiseVariances,
     PhotonCounts,
-    PhotonNoise,
     camera_cost,
     photon_cost,
 )
@@ -35,7 +35,7 @@ def test_photons_of_iterations_add_up(known):
 @pytest.mark.parametrize(("photon_variance", "rest_variance"), [(20.0, 0.02), (60.0, 0.3), (400.0, 0.1)])
 @pytest.mark.parametrize("each", [1.2, 4.0])
 def test_the_variance_after_a_given_time_is_least(photon_variance, rest_variance, each):
-    noise = PhotonNoise(100.0, 100.0 * photon_variance, 2.0 * rest_variance, 2)
+    noise = NoiseVariances(100.0, 100.0 * photon_variance, 2.0 * rest_variance, 2)
     paths = 50_000.0
     numbers = np.arange(1024, FIRST + 1)
 
@@ -51,12 +51,12 @@ def test_the_variance_after_a_given_time_is_least(photon_variance, rest_variance
 @pytest.mark.parametrize(
     ("noise", "first", "photons"),
     [
-        (PhotonNoise(), 16384, 16384),  # nothing is known yet
-        (PhotonNoise(100.0, 0.0, 1.0, 2), 16384, 1024),  # photons make no noise: some go on looking
-        (PhotonNoise(100.0, 0.0, 1.0, 2), 4096, 512),
-        (PhotonNoise(100.0, 0.0, 1.0, 2), 100, 100),
-        (PhotonNoise(100.0, 1e6, 0.0, 2), 16384, 16384),  # all noise is theirs
-        (PhotonNoise(100.0, 0.0, 0.0, 2), 16384, 1024),  # there is no noise
+        (NoiseVariances(), 16384, 16384),  # nothing is known yet
+        (NoiseVariances(100.0, 0.0, 1.0, 2), 16384, 1024),  # photons make no noise: some go on looking
+        (NoiseVariances(100.0, 0.0, 1.0, 2), 4096, 512),
+        (NoiseVariances(100.0, 0.0, 1.0, 2), 100, 100),
+        (NoiseVariances(100.0, 1e6, 0.0, 2), 16384, 16384),  # all noise is theirs
+        (NoiseVariances(100.0, 0.0, 0.0, 2), 16384, 1024),  # there is no noise
     ],
 )
 def test_photons_have_limits(noise, first, photons):
@@ -76,7 +76,7 @@ def test_variances_are_those_of_the_samples():
         brings = 1.0 / photons_in_disk
         return NoiseSamples(rest, rest + brings * counts, brings * (2.0 * positive - counts), np.zeros_like(rest))
 
-    noise, before = PhotonNoise().with_first(samples()), samples()
+    noise, before = NoiseVariances().with_first(samples()), samples()
     for _ in range(4):
         found = samples()
         noise = noise.with_next(photons, found, before.rest, 3.0)
@@ -101,7 +101,7 @@ def test_what_photons_add_to_the_rest_is_theirs():
         return NoiseSamples(rest, rest, signed, signed)
 
     first = samples()
-    noise = PhotonNoise().with_first(first).with_next(1000, samples(), first.rest, 1.0)
+    noise = NoiseVariances().with_first(first).with_next(1000, samples(), first.rest, 1.0)
     assert noise.photon_sum / noise.photons == pytest.approx(1000 * spread**2 / 4.01, rel=0.1)
     assert noise.rest_sum < 0.05 * spread**2 / 4.01
 
@@ -110,7 +110,7 @@ def test_pixels_that_are_not_finite_tell_nothing():
     values = np.ones((8, 8, 4), np.float32)
     values[3, 4] = np.nan, np.inf, -np.inf, 1.0
     samples = NoiseSamples.of(values)
-    noise = PhotonNoise().with_first(samples).with_next(100, samples, samples.rest, 1.0)
+    noise = NoiseVariances().with_first(samples).with_next(100, samples, samples.rest, 1.0)
     assert np.isfinite([noise.photon_sum, noise.rest_sum, noise.rest_photon_variance]).all()
     assert (samples.signed[0, 0], samples.signed[3, 4]) == (2.0, 1.0)
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from rppm_addon.integrator.common.photon_counts import PhotonCounts, PhotonNoise
+from rppm_addon.integrator.common.photon_counts import NoiseVariances, PhotonCounts
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.pictures import Placement
 from rppm_addon.session.checkpoint_file import StillRender, write_checkpoint
@@ -34,7 +34,7 @@ def pause(left_out: int = 0, iteration: int = 5, learned: bool = True) -> Pause:
     passes = {"Depth": depth, "Normal": normal}
     tallies, learned_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
     state = RenderState(
-        left_out, iteration, PhotonCounts((100, 100, 60)), PhotonNoise(160.0, 9.5, 0.25, 1, 0.125),
+        left_out, iteration, PhotonCounts((100, 100, 60)), NoiseVariances(160.0, 9.5, 0.25, 1, 0.125),
         0.1 + random.random(), 3.0 + random.random(), radiance, passes, counts, factors, tallies,
         learned_tallies if learned else None, random.random((3, 5), np.float32) if iteration < 16 else None,
     )  # fmt: skip
