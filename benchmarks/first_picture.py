@@ -80,7 +80,7 @@ def render(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
         elif kind == "progress" and content["progress"]["iteration"] == 1:
             rendering.want_picture()
 
-    rendering = Rendering(context, library, Denoiser([]), take)
+    rendering = Rendering(context, library, Denoiser([]), take, KnownPrograms(), looks_first=True)
     found = Found()
     rendering.show(scene, 1, False)
     rendering.want_picture()

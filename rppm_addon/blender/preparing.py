@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Programs that are compiled while a user still looks at the solid view of a file that was opened."""
+"""Programs that are compiled while a user still looks at the solid view of a file, once RPPM is to render it."""
 
 import logging
 import time
@@ -22,7 +22,7 @@ from .export.strands.round_meshes import ROUND_TYPES
 logger = logging.getLogger(__name__)
 
 IDLE_SECONDS = 2.0
-"""After a file is opened: whoever renders at once needs nobody to prepare."""
+"""After a file is opened, or the engine is chosen: whoever renders at once needs nobody to prepare."""
 _SLICE_SECONDS = 0.02
 _RESOLUTION, _WINDOW = 64, (-1.0, 1.0, -1.0, 1.0)
 """The programs are those of any picture."""
@@ -89,6 +89,8 @@ def _materials_of_round_shapes() -> set[str]:
 
 
 _preparing: _Preparing | None = None
+_SUBSCRIBER = object()
+"""Owns the subscription to the engine."""
 
 
 def _is_wanted() -> bool:
@@ -113,10 +115,21 @@ def _go_on() -> float | None:
     return None
 
 
-@persistent
-def _on_load(*_: object) -> None:
+def _begin_soon() -> None:
     _stop()
     bpy.app.timers.register(_go_on, first_interval=IDLE_SECONDS)
+
+
+@persistent
+def _on_load(*_: object) -> None:
+    _watch_engine()  # Blender drops subscriptions with the file before
+    _begin_soon()
+
+
+def _watch_engine() -> None:
+    """Prepare when a user chooses another engine, as it may be RPPM."""
+    bpy.msgbus.clear_by_owner(_SUBSCRIBER)
+    bpy.msgbus.subscribe_rna(key=(bpy.types.RenderSettings, "engine"), owner=_SUBSCRIBER, args=(), notify=_begin_soon)
 
 
 def _stop() -> None:
@@ -127,11 +140,13 @@ def _stop() -> None:
 
 
 def register() -> None:
-    """Prepare for files that are opened from now on."""
+    """Prepare for files that are opened, and when an engine is chosen, from now on."""
     bpy.app.handlers.load_post.append(_on_load)
+    _watch_engine()
 
 
 def unregister() -> None:
     """Prepare for none."""
     bpy.app.handlers.load_post.remove(_on_load)
+    bpy.msgbus.clear_by_owner(_SUBSCRIBER)
     _stop()

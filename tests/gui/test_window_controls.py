@@ -64,3 +64,14 @@ def test_the_shading_popover_lights_a_viewport(open_blender):
     assert np.abs(open_background - lit).mean() > 3.0 and np.abs(blurred - open_background).mean() > 1.0
     assert "Traceback" not in blender.log()
     blender.quit()
+
+
+def test_choosing_the_engine_prepares_its_programs(open_blender):
+    blender = open_blender("small.blend")
+    blender.step("assign", path="scene.render.engine", value="BLENDER_WORKBENCH")
+    blender.step("end_renderer")
+    time.sleep(4.0)  # longer than a file that was opened is idle
+    assert blender.step("renderer_state")[0] == "STOPPED"
+    blender.step("assign", path="scene.render.engine", value="RPPM")
+    blender.wait_until("renderer_state", 60.0, lambda found: found[0] == "RUNNING")
+    blender.quit()

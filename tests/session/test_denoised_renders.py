@@ -19,6 +19,7 @@ from rppm_addon.scene.settings import DenoisingInputPasses
 from rppm_addon.session.checkpoint_file import write_checkpoint
 from rppm_addon.session.continuation import Continuation
 from rppm_addon.session.process.arrays import unpack
+from rppm_addon.session.process.known_programs import KnownPrograms
 from rppm_addon.session.process.remote_rendering import RemoteRenderer
 from rppm_addon.session.process.rendering import Rendering
 from rppm_addon.session.process.sessions import SessionKind
@@ -156,7 +157,9 @@ def test_a_render_in_the_process_is_stopped_while_it_is_denoised():
     context = Context.create()
     library = ProgramLibrary(context)
     with context.moderngl:
-        rendering = Rendering(context, library, Slow([]), lambda kind, **content: sent.append((kind, content)))
+        rendering = Rendering(
+            context, library, Slow([]), lambda kind, **content: sent.append((kind, content)), KnownPrograms()
+        )
         for stop in (False, True):
             begun.clear(), let.clear(), sent.clear()
             rendering.show(floor(iterations=2, denoising_input_passes="RGB"), 1 + stop, False)

@@ -16,7 +16,7 @@ import pytest
 from rppm_addon.scene import Movement, Shutter
 from rppm_addon.scene.errors import RendererError, SettingsError
 from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.remote_rendering import render
+from rppm_addon.session.process.remote_rendering import RemoteRenderer, render
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
 from rppm_addon.session.renderer import Renderer
@@ -232,7 +232,7 @@ def test_when_python_ends_the_process_leaves(tmp_path, then):
 
 class Job(RenderJob):
     def __init__(self, stop_at=None, snapshots=()):
-        self.stop_at, self.snapshots, self.told = stop_at, snapshots, []
+        self.stop_at, self.snapshots, self.told, self.frames = stop_at, snapshots, [], []
 
     def should_stop(self):
         return self.stop_at is not None and (self.stop_at == 0 or ("progress", self.stop_at) in self.told)
@@ -246,6 +246,7 @@ class Job(RenderJob):
 
     def on_frame(self, progress, frame):
         self.told.append(("frame", frame.combined.shape))
+        self.frames.append((progress.iteration, frame))
 
     def on_snapshot(self, seconds, frame):
         self.told.append(("snapshot", seconds))
@@ -270,9 +271,22 @@ def test_a_render_in_the_process_is_the_same_picture(start, passes):
 
 def test_pictures_that_are_asked_for_come_meanwhile(start):
     job = Job()
-    job.should_stop = lambda: job.told[-1:] and job.told[-1][0] == "frame"
-    assert render(start(), scene_of(size=48), job, SessionKind.FINAL).stopped
-    assert ("frame", (48, 48, 4)) in job.told
+    job.should_stop = lambda: ("frame", (48, 48, 4)) in job.told
+    assert render(start(), scene_of(size=48), job, SessionKind.PREVIEW).stopped
+    assert all(iteration > 0 for iteration, _ in job.frames)
+
+
+def test_a_first_look_comes_before_the_first_picture(start):
+    remote = RemoteRenderer(start(), SessionKind.FINAL)
+    jobs = [Job(), Job()]
+    for job in jobs:
+        remote.render(scene_of(2, size=48), job)
+    first, second = ([iteration for iteration, _ in job.frames] for job in jobs)
+    assert first.index(0) == 0 and first.count(0) == 1
+    assert 0 not in second  # the second frame of an animation compiles nothing
+    look = jobs[0].frames[0][1]
+    assert look.combined.shape == (48, 48, 4) and np.isfinite(look.combined).all() and not look.passes
+    assert look.combined[..., :3].std() > 0.02  # surfaces are told from each other
 
 
 def test_stopped_renders(start):

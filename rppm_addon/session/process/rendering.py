@@ -6,6 +6,8 @@ import dataclasses
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -16,11 +18,13 @@ from ...scene.scene import Scene
 from ..continuation import Continuation, Pause, place_of
 from ..denoised_pictures import finished_frame, wanted_frame
 from ..renderer import SlicedRender, log
-from ..results import Frame, RenderResult
+from ..results import Frame, Progress, RenderResult
 from ..still_keeper import StillKeeper, continued_still
 from .arrays import pack
 from .background_denoising import BackgroundFinish
+from .first_looks import FirstLooks
 from .kept_renders import described
+from .known_programs import KnownPrograms
 from .shared_memory import SharedBlock
 
 
@@ -31,12 +35,23 @@ class Rendering:
     """
 
     def __init__(
-        self, context: Context, library: ProgramLibrary, denoiser: Denoiser, send: Callable[..., None]
+        self,
+        context: Context,
+        library: ProgramLibrary,
+        denoiser: Denoiser,
+        send: Callable[..., None],
+        programs: KnownPrograms,
+        looks_first: bool = False,
     ) -> None:
+        """programs: what all sessions of the process know to be ready; looks_first: send a first look at the session's
+        first scene, where the first iteration takes much longer."""
         self._context = context
         self._library = library
         self._denoiser = denoiser
         self._send = send
+        self._programs = programs
+        self._looks_first = looks_first
+        self._looks = FirstLooks(context, library)
         self._snapshots: Sequence[float] = ()
         self._checkpoint = ""
         self._handed_on: tuple[Pause, float, str] | None = None
@@ -113,6 +128,8 @@ class Rendering:
                     return
                 self._keep()
                 result = self._render.result(self._stopping)
+                if result.statistics.iterations > 0:
+                    self._programs.add(self._mapper.device_scene.materials)
                 self._finish = BackgroundFinish(result, self._scene.settings, self._denoiser)
             finished = self._finish.take(self._stopping)
             if finished is not None:
@@ -140,6 +157,9 @@ class Rendering:
             on_snapshot=self._send_snapshot,
             continuation=continuation,
         )
+        if self._looks_first and continuation.begin is None and not self._programs.cover(self._scene):
+            self._send_first_look()
+        self._looks_first = False
         self._slices = self._render.slices()
 
     def _take_up(self, continuation: Continuation) -> None:
@@ -185,6 +205,14 @@ class Rendering:
             frame = wanted_frame(render.frame(), self._scene.settings)
             self._send_frame("picture", frame, progress=dataclasses.asdict(render.progress))
 
+    def _send_first_look(self) -> None:
+        """Send a picture at iteration 0, before the programs of the scene are compiled."""
+        combined = self._looks.draw(self._scene, self._mapper)
+        if combined is not None:
+            np.nan_to_num(combined, copy=False)
+            progress = Progress(0, self._scene.settings.iterations, self._render.elapsed, photons=0)
+            self._send_frame("picture", Frame(combined, {}), progress=dataclasses.asdict(progress))
+
     def _send_frame(self, kind: str, frame: Frame, **content: object) -> None:
         description, block = pack([frame.combined, *frame.passes.values()])
         if block is not None:
@@ -205,6 +233,7 @@ class Rendering:
 
     def _release_mapper(self) -> None:
         self._scene = self._slices = self._render = self._finish = None
+        self._looks.release()
         if self._mapper is not None:
             self._mapper.release()
             self._mapper = None

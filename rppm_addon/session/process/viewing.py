@@ -11,8 +11,6 @@ import numpy as np
 from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
-from ...gl.sources import ShaderError
-from ...integrator.first_look import FirstLook
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.stages.film import Film
 from ...integrator.viewport.pictures import ViewportPictures, demands_of
@@ -23,6 +21,7 @@ from ..frame_passes import frame_passes
 from ..noise_threshold import NoiseThreshold
 from ..renderer import log, read_combined
 from .background_denoising import POLL_SECONDS, BackgroundDenoising
+from .first_looks import FirstLooks
 from .frames import FrameWriter
 from .known_programs import KnownPrograms
 from .sessions import SessionStatus
@@ -95,7 +94,7 @@ class Viewing:
         self._shown: tuple[Scene, int, bool] | None = None
         self._shown_at = 0.0
         self._first_picture_pending = False
-        self._first_look: FirstLook | None = None
+        self._looks = FirstLooks(context, library)
         """What is seen until there is a first frame; then, by it, what a moving view shows."""
         self._viewport_pictures: ViewportPictures | None = None
         self._moved_at = 0.0
@@ -274,7 +273,7 @@ class Viewing:
         """The picture so far as a viewport shows it."""
         mapper = self._mapper
         if self._viewport_pictures is None:
-            self._viewport_pictures = ViewportPictures(self._context, self._library, self._look())
+            self._viewport_pictures = ViewportPictures(self._context, self._library, self._looks.of(mapper))
         combined = self._viewport_pictures.show(scene, mapper.film, mapper.iteration, last)
         return shown_picture(mapper.film, scene) if combined is None else combined
 
@@ -330,31 +329,18 @@ class Viewing:
         self._mapper.scene.warn(f"the viewport is not denoised: {error}")
 
     def _look_at(self, scene: Scene, generation: int) -> None:
-        """Give a first look at a scene out, unless it fails: what is wrong then the renderer says later."""
-        if scene.camera.panorama is not None or len(scene.settings.passes) == 1:
+        """Give a first look at a scene out, if there is one; a single pass has none."""
+        if len(scene.settings.passes) == 1:
             return
-        try:
-            combined = self._look().draw(scene)
-        except DeviceLostError:
-            raise
-        except (RppmError, ShaderError):
-            log.info("there is no first look", exc_info=True)
-            return
-        self._send_frame(combined, generation, 0.0)
-
-    def _look(self) -> FirstLook:
-        if self._first_look is None:
-            built = self._mapper.device_scene
-            self._first_look = FirstLook(
-                self._context, self._library, built.geometry, built.displacement.as_known, built.centering.centered
-            )
-        return self._first_look
+        combined = self._looks.draw(scene, self._mapper)
+        if combined is not None:
+            self._send_frame(combined, generation, 0.0)
 
     def _while_compiling(self, name: str) -> None:
         """Between two programs of the first frame: follow the view, and say how far it is."""
-        if self._first_look is not None and self._coming is not None:
+        if self._coming is not None:
             scene, generation = self._coming
-            if generation > self._newest_sent and self._first_look.shows_parts_of(scene):
+            if generation > self._newest_sent and self._looks.shows_parts_of(scene):
                 self._look_at(scene, generation)
         now = time.perf_counter()
         if now - self._told_at >= COMPILING_SECONDS:
@@ -395,10 +381,10 @@ class Viewing:
 
     def _release_mapper(self) -> None:
         self._slices = None
-        for pictures in (self._viewport_pictures, self._first_look):
-            if pictures is not None:
-                pictures.release()
-        self._viewport_pictures = self._first_look = None
+        if self._viewport_pictures is not None:
+            self._viewport_pictures.release()
+            self._viewport_pictures = None
+        self._looks.release()
         if self._mapper is not None:
             self._mapper.release()
             self._mapper = None

@@ -164,7 +164,8 @@ class Worker:
             elif session_kind is SessionKind.PREPARATION:
                 session = Preparation(self._context, self._library, send)
             else:
-                session = Rendering(self._context, self._library, self._denoiser, send)
+                looks_first = session_kind is SessionKind.FINAL
+                session = Rendering(self._context, self._library, self._denoiser, send, self._programs, looks_first)
             self._sessions[number] = session_kind, session
         elif kind == "close":
             self._close(number)

@@ -11,6 +11,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.first_look import FirstLook
 from rppm_addon.scene import RenderSettings, Scene, World
 from rppm_addon.scene.meshes import Instance, RayVisibility
+from rppm_addon.session.process import first_looks
 
 SIZE = 96
 RED, GREEN = (0.8, 0.05, 0.05), (0.05, 0.8, 0.05)
@@ -75,6 +76,17 @@ def test_the_background_is_the_worlds_unless_the_film_is_transparent(draw):
     settings = dataclasses.replace(balls().settings, film_transparent=False)
     look = draw(balls(settings=settings, world=World(np.array([0.1, 0.2, 0.4])), exposure=2.0))
     np.testing.assert_allclose(look[-1, -1], (0.2, 0.4, 0.8, 1.0), rtol=1e-6)
+
+
+def test_a_large_look_is_enlarged(mapper, context, library, monkeypatch):
+    looks = first_looks.FirstLooks(context, library)
+    whole = looks.draw(balls(), mapper)
+    monkeypatch.setattr(first_looks, "MOST_PIXELS", whole[..., 0].size // 4)
+    coarse = looks.draw(balls(), mapper)
+    looks.release()
+    assert coarse.shape == whole.shape == (SIZE // 2, SIZE, 4)
+    np.testing.assert_array_equal(coarse[::2, ::2], coarse[1::2, 1::2])  # each pixel is there four times
+    assert np.mean(np.abs(coarse - whole) > 0.02) < 0.1  # at the outlines of two balls
 
 
 def test_emission_goes_with_the_exposure(draw):

@@ -2,6 +2,7 @@
 """Steps about the Properties editor and the preferences."""
 
 import importlib
+import types
 
 import bpy
 from window_steps import area, override, window
@@ -61,9 +62,18 @@ def show_preferences() -> None:
         bpy.ops.preferences.addon_expand(module=_addon())
 
 
+def _renderer_process() -> types.ModuleType:
+    return importlib.import_module(f"{_addon()}.rppm_addon.blender.renderer_process")
+
+
+def end_renderer() -> None:
+    """End the renderer process, as another file does."""
+    _renderer_process().close()
+
+
 def renderer_state() -> list[str]:
     """State and device of the renderer process, as the preferences show them."""
-    process = importlib.import_module(f"{_addon()}.rppm_addon.blender.renderer_process").renderer_process()
+    process = _renderer_process().renderer_process()
     return [process.state.name, process.device.name if process.device else "", process.error]
 
 
