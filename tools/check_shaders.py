@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks that every stage file below shaders/ is valid OpenGL 4.3 core GLSL for glslangValidator, and how long lines
-and functions are.
+"""Checks that every stage file below shaders/ is valid OpenGL 4.3 core GLSL for glslangValidator, that none numbers a
+binding, and how long lines and functions are.
 
 A file that needs defines names values for them in a comment: ``// lint: RESOLUTION=64 DEPTH=2``; several such lines are
 several variants, each checked. Stages that run node graphs are checked with every kind of node, a file of kinds at a
@@ -24,6 +24,7 @@ from rppm_addon.gl.texel_buffers import IMAGES_FOR_LARGE  # noqa: E402
 
 COLUMNS = 120
 FUNCTION_LINES = 60
+_NUMBER = re.compile(r"\bbinding\s*=")
 _FUNCTION = re.compile(r"^\w+ (\w+)\([^;{]*\{$.*?^\}$", re.MULTILINE | re.DOTALL)
 """Functions begin and end with the lines of theirs that are not indented."""
 
@@ -45,6 +46,16 @@ def long_functions(text: str) -> list[tuple[str, int, int]]:
         for match in _FUNCTION.finditer(text)
     )
     return [function for function in found if function[2] > FUNCTION_LINES]
+
+
+def numbers() -> list[str]:
+    """Declarations with a number, which follows from their order (rppm_addon/gl/bindings.py)."""
+    return [
+        f"{path.relative_to(SHADER_FOLDER).as_posix()}:{number}: leave the binding out; Python binds by name"
+        for path in sorted(SHADER_FOLDER.rglob("*.*"))
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if _NUMBER.search(line)
+    ]
 
 
 def lengths() -> list[str]:
@@ -90,8 +101,6 @@ def check_shader(variant: Variant, reads_texels: bool, large: Sequence[str] = ()
         return str(error)
     if stay := source.blocks.keys() & set(large):
         return f"{variant.name}: {', '.join(sorted(stay))} cannot be larger than a storage block"
-    if len(set(source.blocks.values())) < len(source.blocks):  # on software drivers some are texel buffers instead
-        return f"{variant.name}: two blocks share a binding: {source.blocks}"
     try:
         run = subprocess.run(
             ["glslangValidator", "--stdin", "-S", Path(variant.name).suffix[1:]],
@@ -117,7 +126,7 @@ def check_shaders() -> tuple[list[str], int]:
     checked += [(variant, False, large) for variant in variants() if (large := large_blocks(variant))]
     with ThreadPoolExecutor(2) as pool:
         results = list(pool.map(check_shader, *zip(*checked, strict=True)))
-    return [*lengths(), *(result for result in results if result)], len(checked)
+    return [*numbers(), *lengths(), *(result for result in results if result)], len(checked)
 
 
 def main() -> int:

@@ -54,4 +54,5 @@ def _programs(checked: list[Variant], vertices: dict[PurePosixPath, Variant]) ->
         if path.suffix == ".comp":
             yield Program(" ".join(words), {"comp": variant.expand()})
         elif path.suffix == ".frag":
-            yield Program(" ".join(words), {"vert": vertices[path.parent].expand(), "frag": variant.expand()})
+            vertex = vertices[path.parent].expand()
+            yield Program(" ".join(words), {"vert": vertex, "frag": variant.expand(beside=vertex)})

@@ -14,7 +14,7 @@ from rppm_addon.gl.records import KINDS
 
 UNIT = 15
 """Image unit of the texel buffer that takes the counts."""
-_BLOCK = re.compile(r"layout\s*\(\s*std430\s*,[^)]*\)[\w\s]*?\bbuffer\s+(\w+)\s*\{([^}]*)\}\s*;")
+_BLOCK = re.compile(r"\bbuffer\s+(\w+)\s*\{([^}]*)\}\s*;")
 _MEMBER = re.compile(r"(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*;")
 _VERSION = re.compile(r"^\s*#\s*version\b.*$", re.MULTILINE)
 _MAIN = re.compile(r"\bvoid\s+main\s*\(\s*(?:void)?\s*\)")

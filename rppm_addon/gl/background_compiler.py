@@ -80,8 +80,8 @@ class CompilerContext:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._cache, self._linker, self._dispatch = BinaryCache(context), Linker(context), EmptyDispatch(context)
-        for unit, kind in TextureKind.by_unit.items():
-            kind.make(context.moderngl, (1, 1)).use(unit)
+        kinds = TextureKind.by_sampler.items()
+        self._textures = {name: kind.make(context.moderngl, (1, 1)) for name, kind in kinds}
         self._texels = context.moderngl.buffer(reserve=allocated_size(TEXEL_SIZE))
 
     def compile(self, source: Source) -> None:
@@ -91,6 +91,9 @@ class CompilerContext:
             if not self._cache.load(program, source.text):
                 self._linker.link(program, [source])
                 self._cache.store(program, source.text)
+            for name, unit in source.textures.items():
+                if name in self._textures:
+                    self._textures[name].use(unit)
             buffers = source.texel_buffers
             TexelBuffers(self._context, buffers).bind(dict.fromkeys(buffers, self._texels))
             self._dispatch.run(program)

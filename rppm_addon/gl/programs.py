@@ -40,6 +40,8 @@ FIRST_INVOCATION = "first_invocation"
 """The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
 Block = moderngl.Buffer | BufferRange
 """What is bound as a storage block."""
+Resource = Block | moderngl.Texture
+"""What is bound by name: a storage block, or the texture of a sampler."""
 Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
 
@@ -55,24 +57,22 @@ class _Program:
         """Called once, when all is bound."""
         self.name = " + ".join(source.files[0] for source in sources)
         self._bindings: dict[str, int] = {}
+        self._textures: dict[str, int] = {}
         self.record = None
         for source in sources:
-            for block, binding in source.blocks.items():
-                if self._bindings.setdefault(block, binding) != binding:
-                    raise ShaderError(f"{self.name}: block {block} has two bindings")
+            self._bindings |= source.blocks
+            self._textures |= source.textures
             self.record = self.record or source.parameters
         self.with_large: Callable[[frozenset[str]], Any] | None = None
         """The program that reads the blocks of these names as texels, as far as it can."""
         texel_buffers = {name: buffer for source in sources for name, buffer in source.texel_buffers.items()}
         self._texel_bytes = {name: buffer.texel_bytes for name, buffer in texel_buffers.items()}
         self._texel_buffers = TexelBuffers(context, texel_buffers) if texel_buffers else None
-        if len(set(self._bindings.values())) != len(self._bindings):
-            raise ShaderError(f"{self.name}: two blocks share a binding: {self._bindings}")
-        self.blocks = frozenset(self._bindings) | texel_buffers.keys()
-        """Names of those that it reads and writes."""
+        self.blocks = frozenset(self._bindings) | self._textures.keys() | texel_buffers.keys()
+        """Names of the storage blocks and textures that it reads and writes."""
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
 
-    def _for_large(self, buffers: Mapping[str, Block]) -> Any:
+    def _for_large(self, buffers: Mapping[str, Any]) -> Any:
         """The program that is to be run in place of this one, as blocks are too large for it; None if none is.
 
         Raises DeviceError where there is none.
@@ -88,7 +88,7 @@ class _Program:
             )
         return other
 
-    def too_large(self, buffers: Mapping[str, Block]) -> frozenset[str]:
+    def too_large(self, buffers: Mapping[str, Any]) -> frozenset[str]:
         """Names of blocks whose buffers are larger than the device allows where the program has them."""
         block, texels = self.context.storage_block_limit, self.context.most_texels
         most = dict.fromkeys(self._bindings, block) | {name: texels * size for name, size in self._texel_bytes.items()}
@@ -96,7 +96,7 @@ class _Program:
             name for name, limit in most.items() if name in buffers and buffers[name].size > limit + MOST_ADDED
         )
 
-    def _bind(self, buffers: Mapping[str, Block], parameters: Mapping | None) -> None:
+    def _bind(self, buffers: Mapping[str, Any], parameters: Mapping | None) -> None:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
@@ -105,6 +105,8 @@ class _Program:
             raise ValueError(f"{self.name}: buffers missing {missing}, unknown {unknown}")
         for block, binding in self._bindings.items():
             buffers[block].bind_to_storage_buffer(binding)
+        for sampler, unit in self._textures.items():
+            buffers[sampler].use(unit)
         if self._texel_buffers is not None:
             self._texel_buffers.bind(buffers)
         if self._parameters is not None:
@@ -133,7 +135,7 @@ class ComputeProgram(_Program):
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)
 
-    def run(self, threads: int, buffers: Mapping[str, Block], parameters: Mapping | None = None) -> None:
+    def run(self, threads: int, buffers: Mapping[str, Resource], parameters: Mapping | None = None) -> None:
         """Run so many threads (rounded up to whole groups) and order their writes."""
         if threads <= 0:
             return
@@ -149,7 +151,7 @@ class ComputeProgram(_Program):
         self,
         arguments: moderngl.Buffer,
         offset: int,
-        buffers: Mapping[str, Block],
+        buffers: Mapping[str, Resource],
         parameters: Mapping | None = None,
     ) -> None:
         """Run as many groups as three uints at byte ``offset`` of ``arguments`` say."""
@@ -204,7 +206,7 @@ class DrawProgram(_Program):
         self,
         framebuffer: moderngl.Framebuffer,
         vertices: int | moderngl.Buffer,
-        buffers: Mapping[str, Block],
+        buffers: Mapping[str, Resource],
         parameters: Mapping | None = None,
         viewport: tuple[int, int, int, int] | None = None,
         state: int = moderngl.NOTHING,
@@ -435,7 +437,8 @@ class ProgramLibrary:
                     f"{vertex} takes more of {', '.join(sorted(large))} at once than the device "
                     f"{self.context.information.name} allows; simplify the scene, or choose another device"
                 )
-            vertex_source, fragment_source = (expand(path, defines, large=large) for path in (vertex, fragment))
+            vertex_source = expand(vertex, defines, large=large)
+            fragment_source = expand(fragment, defines, large=large, beside=vertex_source)
             program = DrawProgram(self.context, self._maker, vertex_source, fragment_source)
             if not large:
                 program.with_large = functools.partial(self._draw, vertex, fragment, defines)

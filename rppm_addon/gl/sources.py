@@ -7,6 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .bindings import BLOCK_LAYOUT, number_bindings, number_images, numbered_blocks, numbered_textures
 from .constants import Constants
 from .functions import put_together
 from .records import Record
@@ -20,9 +21,8 @@ SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent
 
 _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+))\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
-_SHARED_BLOCK = re.compile(r"^(\s*layout\s*\(\s*std430\b[^)]*\)[\w\s]*?\bbuffer\s+(\w+))\s*;(.*)$")
-_BLOCK = re.compile(r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*(\d+)\s*\)[\w\s]*?\bbuffer\s+(\w+)")
-_PARAMETERS = re.compile(r"layout\s*\(\s*std140\s*,\s*binding\s*=\s*0\s*\)\s*uniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
+_BLOCK = re.compile(r"^((?:\w+\s+)*buffer\s+(\w+))\s*([;{].*)$")
+_PARAMETERS = re.compile(r"\buniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
 _LOCAL_SIZE = re.compile(r"local_size_x\s*=\s*(\d+)")
 # "0:12(3): error" (Mesa), "0(12) : error" (NVIDIA), "ERROR: 0:12:" (AMD, Intel, glslang)
 _POSITION = re.compile(r"\b(\d+)(?::|\()(\d+)\b\)?")
@@ -53,11 +53,16 @@ class Source:
     @property
     def blocks(self) -> dict[str, int]:
         """Binding of each storage block by the block's name, but for those that are texel buffers here."""
-        return {name: int(binding) for binding, name in _BLOCK.findall(self.text) if name not in self.texel_buffers}
+        return {name: number for name, number in numbered_blocks(self.text).items() if name not in self.texel_buffers}
+
+    @property
+    def textures(self) -> dict[str, int]:
+        """Unit of each texture by the name of its sampler."""
+        return numbered_textures(self.text)
 
     @property
     def parameters(self) -> Record | None:
-        """The record of the parameter block (the uniform block at binding 0), if there is one."""
+        """The record of the parameter block, if there is one."""
         match = _PARAMETERS.search(self.text)
         return Record.registry[match.group(1)] if match else None
 
@@ -86,16 +91,18 @@ def expand(
     reads_texels: bool = False,
     large: Collection[str] = (),
     whole: bool = False,
+    beside: Source | None = None,
 ) -> Source:
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include TRAVERSAL`` inserts the file that the define of that
     name is; ``#include <Ray>`` inserts the struct of the
-    record, or the constants, of that name once; ``layout(std430, binding = 0) buffer Rays;`` gets the members of the
-    StorageBlock of that name, and before it the structs of its records. Defines go after #version; ``inserts`` are
-    texts of files that are made at run time, by name. reads_texels: blocks that are only read become texel buffers;
-    large: those of these names in any case (read_as_texels). Sources with either have READS_TEXELS defined. Functions
-    that main does not lead to are left out, unless it is to be whole. Raises ShaderError.
+    record, or the constants, of that name once; ``readonly buffer Rays;`` gets the members of the StorageBlock of that
+    name, and before it the structs of its records. Blocks, textures and images get numbers (bindings.py). Defines go
+    after #version; ``inserts`` are texts of files that are made at run time, by name. reads_texels: blocks that are only
+    read become texel buffers; large: those of these names in any case (read_as_texels). Sources with either have
+    READS_TEXELS defined. Functions that main does not lead to are left out, unless it is to be whole. beside: the other
+    stage of the program, whose numbers hold here as well. Raises ShaderError.
     """
     defines = {**(defines or {}), **({"READS_TEXELS": 1} if reads_texels or large else {})}
     files: list[str] = []
@@ -129,12 +136,16 @@ def expand(
                 lines.append(line)
                 lines.extend(f"#define {key} {value}" for key, value in defines.items())
                 lines.append(f"#line {line_number + 1} {number}")
-            elif match.re is _SHARED_BLOCK:
-                if match.group(2) not in StorageBlock.registry:
-                    raise ShaderError(f"{name}:{line_number}: there is no storage block {match.group(2)}")
-                shared = StorageBlock.registry[match.group(2)]
-                structs = "".join(f"{declare(record.name)} " for record in shared.records)
-                lines.append(f"{structs}{match.group(1)} {{ {shared.members} }};{match.group(3)}")
+            elif match.re is _BLOCK:
+                block, rest = match.group(2), match.group(3)
+                structs = ""
+                if rest.startswith(";"):
+                    if block not in StorageBlock.registry:
+                        raise ShaderError(f"{name}:{line_number}: there is no storage block {block}")
+                    shared = StorageBlock.registry[block]
+                    structs = "".join(f"{declare(record.name)} " for record in shared.records)
+                    rest = f"{{ {shared.members} }}{rest}"
+                lines.append(f"{structs}{BLOCK_LAYOUT} {match.group(1)} {rest}")
             elif not match.group(2):
                 read(_included_file(match, defines, f"{name}:{line_number}"), f"{name}:{line_number}")
                 lines.append(f"#line {line_number + 1} {number}")
@@ -145,7 +156,12 @@ def expand(
                 lines.append(declare(wanted))
 
     read(path, path)
-    return _source(put_together(lines, whole) + "\n", files, DEFINE in defines, reads_texels, large)
+    text = number_images(put_together(lines, whole) + "\n")
+    texel_buffers = declared_texel_buffers(text) if DEFINE in defines else {}
+    if reads_texels or large:
+        text, texel_buffers = read_as_texels(text, texel_buffers, large, reads_texels)
+    numbers = (beside.blocks, beside.textures) if beside else ({}, {})
+    return Source(number_bindings(text, *numbers), files, texel_buffers)
 
 
 def _included_file(match: re.Match, defines: Mapping[str, object], includer: str) -> str:
@@ -164,7 +180,7 @@ def _parts(text: str) -> list[tuple[int, str, re.Match | None]]:
     parts: list[tuple[int, str, re.Match | None]] = []
     plain: list[str] = []
     for number, line in enumerate(text.splitlines(), 1):
-        match = _INCLUDE.match(line) or _SHARED_BLOCK.match(line) or _VERSION.match(line)
+        match = _INCLUDE.match(line) or _VERSION.match(line) or ("buffer" in line and _BLOCK.match(line)) or None
         if match is None:
             plain.append(line)
             continue
@@ -175,12 +191,3 @@ def _parts(text: str) -> list[tuple[int, str, re.Match | None]]:
     if plain:
         parts.append((0, "\n".join(plain), None))
     return parts
-
-
-def _source(
-    text: str, files: list[str], declares_texel_buffers: bool, reads_texels: bool, large: Collection[str]
-) -> Source:
-    texel_buffers = declared_texel_buffers(text) if declares_texel_buffers else {}
-    if reads_texels or large:
-        text, texel_buffers = read_as_texels(text, texel_buffers, large, reads_texels)
-    return Source(text, files, texel_buffers)

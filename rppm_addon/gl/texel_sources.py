@@ -19,7 +19,7 @@ _IMAGE = re.compile(
     r"layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform\s+u?imageBuffer\s+(\w+)"
 )
 _ARRAY = (
-    r"layout\s*\(\s*std430\s*,\s*binding\s*=\s*\d+\s*\)\s*(?:restrict\s+)?%sbuffer\s+(?P<block>\w+)\s*"
+    r"layout\(std430\)\s*(?:restrict\s+)?%sbuffer\s+(?P<block>\w+)\s*"
     r"\{\s*(?P<item>\w+)\s+(?P<array>\w+)\s*\[\s*\]\s*;\s*\}\s*;"
 )
 """A block that is an array and nothing else."""

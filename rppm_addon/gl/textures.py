@@ -8,15 +8,15 @@ import moderngl
 
 
 class TextureKind:
-    """Linearly filtered RGBA textures of fixed units: what drivers compile programs for, beside their sources."""
+    """Linearly filtered RGBA textures by the names of their samplers: drivers compile programs for such kinds."""
 
-    by_unit: ClassVar[dict[int, "TextureKind"]] = {}
+    by_sampler: ClassVar[dict[str, "TextureKind"]] = {}
 
-    def __init__(self, units: Sequence[int], dtype: str, repeats: tuple[bool, bool]) -> None:
+    def __init__(self, samplers: Sequence[str], dtype: str, repeats: tuple[bool, bool]) -> None:
         """dtype: moderngl's, ``f4`` or ``f2``; repeats: in x and in y, else the border goes on."""
         self._dtype = dtype
         self._repeats = repeats
-        self.by_unit.update(dict.fromkeys(units, self))
+        self.by_sampler.update(dict.fromkeys(samplers, self))
 
     def make(self, gl: moderngl.Context, size: tuple[int, int], data: bytes | None = None) -> moderngl.Texture:
         """A texture of columns and rows."""

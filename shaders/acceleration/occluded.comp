@@ -9,9 +9,9 @@ layout(local_size_x = 64) in;
 #define SHADOW_RAYS
 #include TRAVERSAL
 
-layout(std430, binding = 1) restrict readonly buffer Rays;
-layout(std430, binding = 2) restrict writeonly buffer Visibility;
-layout(std430, binding = 5) restrict readonly buffer LightTriangles;
+restrict readonly buffer Rays;
+restrict writeonly buffer Visibility;
+restrict readonly buffer LightTriangles;
 
 void main() {
     uint index = living_path();

@@ -10,9 +10,9 @@ layout(local_size_x = 64) in;
 #define NEAREST_SHADOW
 #include TRAVERSAL
 
-layout(std430, binding = 1) restrict readonly buffer Rays;
-layout(std430, binding = 2) restrict writeonly buffer Hits;
-layout(std430, binding = 5) restrict readonly buffer LightTriangles;
+restrict readonly buffer Rays;
+restrict writeonly buffer Hits;
+restrict readonly buffer LightTriangles;
 
 void main() {
     uint index = living_path();

@@ -14,11 +14,11 @@ uvec2 shadow_sets;  // bits of those that are in the ray's way
 #define NEAREST_SHADOW
 #include TRAVERSAL
 
-layout(std430, binding = 1) restrict readonly buffer Rays;
-layout(std430, binding = 2) restrict writeonly buffer Hits;
-layout(std430, binding = 3) restrict readonly buffer Contributions;
-layout(std430, binding = 4) restrict readonly buffer LightLinks;
-layout(std430, binding = 5) restrict readonly buffer LightTriangles;
+restrict readonly buffer Rays;
+restrict writeonly buffer Hits;
+restrict readonly buffer Contributions;
+restrict readonly buffer LightLinks;
+restrict readonly buffer LightTriangles;
 
 void main() {
     uint index = living_path();

@@ -9,8 +9,8 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include TRAVERSAL
 
-layout(std430, binding = 1) restrict readonly buffer Rays;
-layout(std430, binding = 2) restrict writeonly buffer Hits;
+restrict readonly buffer Rays;
+restrict writeonly buffer Hits;
 
 void main() {
     uint index = living_path();

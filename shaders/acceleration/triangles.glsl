@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The world-space triangles, three vertices each (w unused).
 
-layout(std430, binding = 8) restrict readonly buffer Triangles;
+restrict readonly buffer Triangles;
 vec4 triangle_vertex(uint number) { return triangle_vertices[number]; }

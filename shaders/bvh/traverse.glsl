@@ -8,7 +8,7 @@
 #include "common/finite.glsl"
 #include <BvhNodes>
 
-layout(std430, binding = 10) restrict readonly buffer BvhNodes;
+restrict readonly buffer BvhNodes;
 
 // What a ray needs for tests with boxes.
 struct SlabTest {

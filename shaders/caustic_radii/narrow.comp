@@ -7,9 +7,9 @@ layout(local_size_x = 64) in;
 #include <NarrowParameters>
 #include "common/invocation.glsl"
 #include "splat_sums/sums.glsl"
-layout(std140, binding = 0) uniform Parameters { NarrowParameters parameters; };
-layout(std430, binding = 0) readonly buffer PhotonCounts;
-layout(std430, binding = 1) buffer RadiusFactors;
+uniform Parameters { NarrowParameters parameters; };
+readonly buffer PhotonCounts;
+buffer RadiusFactors;
 
 void main() {
     uint index = invocation_index();

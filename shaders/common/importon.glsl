@@ -9,7 +9,7 @@
 #include "common/path_history.glsl"
 #include "common/path_depth.glsl"
 #include "common/surface_tolerance.glsl"
-layout(std430, binding = 6) readonly buffer PhotonOrigins;
+readonly buffer PhotonOrigins;
 
 // An importon, by its number: its members are read where they are asked for, since processors have no registers for
 // all of them. Where reading them each time costs more (gl/texel_buffers.py), a copy.

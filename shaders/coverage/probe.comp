@@ -17,11 +17,11 @@ layout(local_size_x = 64) in;
 #include "common/photon.glsl"
 #include "common/gathering.glsl"
 #include "common/surface_tolerance.glsl"
-layout(std140, binding = 0) uniform Parameters { CoverageParameters parameters; };
+uniform Parameters { CoverageParameters parameters; };
 #include TRAVERSAL
 
-layout(std430, binding = 1) buffer Importons;
-layout(std430, binding = 2) readonly buffer Closures;
+buffer Importons;
+readonly buffer Closures;
 
 const uint MOST_LAYERS = 4u;
 const float FLAT = 0.99;

@@ -11,16 +11,16 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
-layout(std140, binding = 0) uniform Parameters { CryptomatteParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) readonly buffer CameraPaths;
-layout(std430, binding = 3) readonly buffer Attributes;
-layout(std430, binding = 4) readonly buffer Identifiers { uint identifiers[]; };
+uniform Parameters { CryptomatteParameters parameters; };
+readonly buffer Closures;
+readonly buffer Rays;
+readonly buffer CameraPaths;
+readonly buffer Attributes;
+readonly buffer Identifiers { uint identifiers[]; };
 // of a pixel so many pairs of an identifier, 0 where there is none yet, and the bits of its share
-layout(std430, binding = 5) buffer Pairs { uvec2 pairs[]; };
+buffer Pairs { uvec2 pairs[]; };
 // of a path of the band: 1 and the segment that ended at a catcher, or 0
-layout(std430, binding = 6) buffer CaughtAfter { uint caught_after[]; };
+buffer CaughtAfter { uint caught_after[]; };
 
 uint first;  // pair of the pixel
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "deep_cubemap/jobs.glsl"
 
-layout(std430, binding = 2) restrict writeonly buffer OverlapJobs;
+restrict writeonly buffer OverlapJobs;
 
 // Counted past the capacity as well, so that the host learns how much is needed.
 void add_job(uint triangle, uint tile, ivec4 rectangle, uvec2 extent) {

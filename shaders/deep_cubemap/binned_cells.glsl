@@ -3,6 +3,6 @@
 // slices all these touch together. Until its bins are allocated, such a cell's content is its number here.
 #include <BinnedCell>
 
-layout(std430, binding = 6) buffer BinnedCells { BinnedCell binned_cells[]; };
+buffer BinnedCells { BinnedCell binned_cells[]; };
 
 uint binned_cell_number(uint content) { return content & 0x3fffffffu; }

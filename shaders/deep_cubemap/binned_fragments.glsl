@@ -3,7 +3,7 @@
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/bins.glsl"
 
-layout(std430, binding = 5) restrict readonly buffer BinnedFragments;
+restrict readonly buffer BinnedFragments;
 
 // First and last bin of the fragment in its cell.
 ivec2 fragment_bins(BinnedFragment fragment, CubemapCell cell) {

@@ -10,7 +10,7 @@
 #define DEPTH_BINS_ACCESS restrict readonly
 #endif
 
-layout(std430, binding = 11) DEPTH_BINS_ACCESS buffer DepthBins { uint bin_ends[]; };
+DEPTH_BINS_ACCESS buffer DepthBins { uint bin_ends[]; };
 
 // The cell's content tells how many bins: 2^cut a slice, or one for 2^join slices.
 #include <DepthBins>

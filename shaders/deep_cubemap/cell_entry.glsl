@@ -3,12 +3,12 @@
 #include "deep_cubemap/entries.glsl"
 
 #ifdef TEXEL_BUFFERS
-layout(rgba32ui, binding = 1) restrict readonly uniform uimageBuffer CellEntries;
+layout(rgba32ui) restrict readonly uniform uimageBuffer CellEntries;
 uvec2 cell_entry(uint place) {
     uvec4 two = imageLoad(CellEntries, int(place >> 1u));
     return (place & 1u) == 0u ? two.xy : two.zw;
 }
 #else
-layout(std430, binding = 12) restrict readonly buffer CellEntries;
+restrict readonly buffer CellEntries;
 uvec2 cell_entry(uint place) { return cell_entries[place]; }
 #endif

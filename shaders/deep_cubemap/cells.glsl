@@ -26,13 +26,13 @@
 
 // By index; see rppm_addon/gl/texel_buffers.py.
 #ifdef TEXEL_BUFFERS
-layout(rgba32ui, binding = 0) restrict readonly uniform uimageBuffer CubemapCells;
+layout(rgba32ui) restrict readonly uniform uimageBuffer CubemapCells;
 CubemapCell cubemap_cell(uint index) {
     uvec4 words = imageLoad(CubemapCells, int(index));
     return CubemapCell(words.x, words.y, words.z, words.w);
 }
 #else
-layout(std430, binding = 10) CUBEMAP_CELLS_ACCESS buffer CubemapCells { CubemapCell cubemap_cells[]; };
+CUBEMAP_CELLS_ACCESS buffer CubemapCells { CubemapCell cubemap_cells[]; };
 #ifndef DEEP_CUBEMAP_BUILD
 CubemapCell cubemap_cell(uint index) { return cubemap_cells[index]; }
 #endif

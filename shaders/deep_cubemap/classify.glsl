@@ -5,7 +5,7 @@
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"
 #include "deep_cubemap/jobs.glsl"
-layout(std430, binding = 2) restrict readonly buffer OverlapJobs;
+restrict readonly buffer OverlapJobs;
 #include "deep_cubemap/fragments.glsl"
 #include "deep_cubemap/faces.glsl"
 #include "deep_cubemap/cone_overlap.glsl"

@@ -8,4 +8,4 @@
 #define CORE_TRIANGLES_ACCESS restrict readonly
 #endif
 
-layout(std430, binding = 13) CORE_TRIANGLES_ACCESS buffer CoreTriangles { uint core_triangles[]; };
+CORE_TRIANGLES_ACCESS buffer CoreTriangles { uint core_triangles[]; };

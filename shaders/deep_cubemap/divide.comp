@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
 #include <DivideLevel>
-layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
+uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"

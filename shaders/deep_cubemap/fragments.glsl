@@ -4,7 +4,7 @@
 #include <OverlapFragment>
 #include "deep_cubemap/extents.glsl"
 
-layout(std430, binding = 3) restrict writeonly buffer NewFragments { OverlapFragment new_fragments[]; };
+restrict writeonly buffer NewFragments { OverlapFragment new_fragments[]; };
 
 void add_fragment(uint index, ivec2 cell, int side_exponent, uint triangle, uvec2 depths, uvec2 extent) {
     ivec4 within = extent_in_tile(extent, cell, side_exponent + 2);

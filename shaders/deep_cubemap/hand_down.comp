@@ -6,18 +6,18 @@ layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
 #include <DivideLevel>
-layout(std140, binding = 0) uniform Parameters { DivideLevel parameters; };
+uniform Parameters { DivideLevel parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"
 #include "deep_cubemap/binned_cells.glsl"
 #include "deep_cubemap/entries.glsl"
-layout(std430, binding = 12) restrict writeonly buffer CellEntries;
+restrict writeonly buffer CellEntries;
 #include "deep_cubemap/add_job.glsl"
 #include "deep_cubemap/fragments.glsl"
 
-layout(std430, binding = 4) restrict readonly buffer OldFragments { OverlapFragment old_fragments[]; };
-layout(std430, binding = 5) restrict writeonly buffer BinnedFragments;
+restrict readonly buffer OldFragments { OverlapFragment old_fragments[]; };
+restrict writeonly buffer BinnedFragments;
 
 void divide_fragment(OverlapFragment fragment, uint tile) {
     uvec2 extent = uvec2(fragment.extent_low, fragment.extent_high);

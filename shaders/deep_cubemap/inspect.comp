@@ -6,8 +6,8 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "deep_cubemap/traverse.glsl"
 
-layout(std430, binding = 0) restrict readonly buffer Camera;
-layout(std430, binding = 1) restrict writeonly buffer Inspections { vec4 inspections[]; };
+restrict readonly buffer Camera;
+restrict writeonly buffer Inspections { vec4 inspections[]; };
 #include "gbuffer/panorama.glsl"
 
 // Triangles listed in the leaf that a point lies in; those in several depth bins count as often.

@@ -5,7 +5,7 @@ layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
 #include <MergeLevel>
-layout(std140, binding = 0) uniform Parameters { MergeLevel parameters; };
+uniform Parameters { MergeLevel parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/cells.glsl"
 #include "deep_cubemap/tiles.glsl"

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"
 #include <OverlapDraw>
-layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
+uniform Parameters { OverlapDraw parameters; };
 #include "deep_cubemap/classify.glsl"
 
 #include <Dispatch>

@@ -5,7 +5,7 @@
 // A pixel is a cell of the job's rectangle; the test decides whether the triangle touches it.
 #define DEEP_CUBEMAP_BUILD
 #include <OverlapDraw>
-layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
+uniform Parameters { OverlapDraw parameters; };
 #include "deep_cubemap/classify.glsl"
 
 flat in uint job_number;

@@ -5,10 +5,10 @@
 // no scissor and no near plane.
 #define DEEP_CUBEMAP_BUILD
 #include <OverlapDraw>
-layout(std140, binding = 0) uniform Parameters { OverlapDraw parameters; };
+uniform Parameters { OverlapDraw parameters; };
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/jobs.glsl"
-layout(std430, binding = 2) restrict readonly buffer OverlapJobs;
+restrict readonly buffer OverlapJobs;
 #include "common/quad_corners.glsl"
 
 flat out uint job_number;

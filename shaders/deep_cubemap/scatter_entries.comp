@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/state.glsl"
 #include "deep_cubemap/binned_fragments.glsl"
 #include "deep_cubemap/entries.glsl"
-layout(std430, binding = 12) restrict writeonly buffer CellEntries;
+restrict writeonly buffer CellEntries;
 
 void main() {
     uint index = invocation_index();

@@ -9,7 +9,7 @@
 #define DEEP_CUBEMAP_ACCESS restrict readonly
 #endif
 
-layout(std430, binding = 9) DEEP_CUBEMAP_ACCESS buffer DeepCubemap { DeepCubemapState deep_cubemap; };
+DEEP_CUBEMAP_ACCESS buffer DeepCubemap { DeepCubemapState deep_cubemap; };
 
 // Bits of floats that sort as the floats do, and back.
 uvec3 sortable_bits(vec3 v) {

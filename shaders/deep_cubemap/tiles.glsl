@@ -2,7 +2,7 @@
 // Where the tiles are, kept while building: the place of the cell that a tile divides, among the cells
 // of that cell's level, as x | y << 14 | face << 28.
 
-layout(std430, binding = 1) buffer CubemapTiles { uint cubemap_tiles[]; };
+buffer CubemapTiles { uint cubemap_tiles[]; };
 
 uint pack_place(ivec2 cell, int face) { return uint(cell.x) | uint(cell.y) << 14 | uint(face) << 28; }
 ivec2 place_cell(uint place) { return ivec2(place & 0x3fffu, (place >> 14) & 0x3fffu); }

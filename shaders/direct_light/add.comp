@@ -5,10 +5,10 @@
 layout(local_size_x = 64) in;
 
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Visibility;
-layout(std430, binding = 1) readonly buffer Contributions;
-layout(std430, binding = 2) buffer Radiances;
-layout(std430, binding = 3) buffer FoundRadiances;
+readonly buffer Visibility;
+readonly buffer Contributions;
+buffer Radiances;
+buffer FoundRadiances;
 
 void main() {
     uint index = living_path();

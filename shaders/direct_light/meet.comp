@@ -8,11 +8,11 @@ layout(local_size_x = 64) in;
 #include <Hit>
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Hits;
-layout(std430, binding = 1) readonly buffer Attributes;
-layout(std430, binding = 2) readonly buffer Materials;
-layout(std430, binding = 3) buffer ShadowRays;
-layout(std430, binding = 4) writeonly buffer Visibility;
+readonly buffer Hits;
+readonly buffer Attributes;
+readonly buffer Materials;
+buffer ShadowRays;
+writeonly buffer Visibility;
 
 void main() {
     uint index = living_path();

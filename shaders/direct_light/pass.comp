@@ -14,11 +14,11 @@ layout(local_size_x = 64) in;
 
 const float NO_REACH = 1e-30;  // of a ray that is traced and meets nothing
 
-layout(std140, binding = 0) uniform Parameters { PassSurfaceParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) buffer ShadowRays;
-layout(std430, binding = 2) buffer Contributions;
-layout(std430, binding = 3) readonly buffer CameraPaths;
+uniform Parameters { PassSurfaceParameters parameters; };
+readonly buffer Closures;
+buffer ShadowRays;
+buffer Contributions;
+readonly buffer CameraPaths;
 
 void main() {
     uint index = living_path();

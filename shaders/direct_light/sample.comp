@@ -15,22 +15,22 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/transparency.glsl"
 #include "common/path_history.glsl"
-layout(std430, binding = 10) readonly buffer Materials;
+readonly buffer Materials;
 #include "materials/medium.glsl"
-layout(std140, binding = 0) uniform Parameters { DirectLightParameters parameters; };
+uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
+readonly buffer Closures;
 #include "common/bsdf/stored_lobes.glsl"
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) readonly buffer CameraPaths;
-layout(std430, binding = 3) writeonly buffer ShadowRays;
-layout(std430, binding = 9) writeonly buffer LightTriangles;
-layout(std430, binding = 8) writeonly buffer Contributions;
-layout(std430, binding = 11) readonly buffer Camera;
-layout(std430, binding = 15) readonly buffer RadiusFactors;
+readonly buffer Rays;
+readonly buffer CameraPaths;
+writeonly buffer ShadowRays;
+writeonly buffer LightTriangles;
+writeonly buffer Contributions;
+readonly buffer Camera;
+readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 #include "importons/round_shapes.glsl"
-layout(std430, binding = 12) writeonly buffer LightSplits;
+writeonly buffer LightSplits;
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
 struct Parts { vec3 glossy; vec3 transmission; };

@@ -10,12 +10,12 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/geometry.glsl"
 #include <ShadingInstance>
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) buffer ShadowRays;
-layout(std430, binding = 2) buffer Contributions;
-layout(std430, binding = 3) readonly buffer Triangles;
-layout(std430, binding = 4) readonly buffer Attributes;
-layout(std430, binding = 5) readonly buffer ShadingInstances;
+readonly buffer Closures;
+buffer ShadowRays;
+buffer Contributions;
+readonly buffer Triangles;
+readonly buffer Attributes;
+readonly buffer ShadingInstances;
 
 // Of corners with normals: how far a point may rise along the surface's normal until it lies above the planes through
 // the corners; sign: -1 for one that faces away from the normals, and goes down.

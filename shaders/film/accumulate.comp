@@ -6,12 +6,12 @@ layout(local_size_x = 64) in;
 
 #include <FilmParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { FilmParameters parameters; };
+uniform Parameters { FilmParameters parameters; };
 #include "splat_sums/read.glsl"
 #include "common/luminance.glsl"
-layout(std430, binding = 0) readonly buffer Radiances;
-layout(std430, binding = 2) buffer Film;
-layout(std430, binding = 3) buffer PhotonLight;
+readonly buffer Radiances;
+buffer Film;
+buffer PhotonLight;
 
 void main() {
     uint index = invocation_index();

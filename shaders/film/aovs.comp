@@ -6,9 +6,9 @@ layout(local_size_x = 64) in;
 
 #include <AovParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { AovParameters parameters; };
-layout(std430, binding = 0) readonly buffer AovValues;
-layout(std430, binding = 1) buffer FilmAovs { float film_aovs[]; };
+uniform Parameters { AovParameters parameters; };
+readonly buffer AovValues;
+buffer FilmAovs { float film_aovs[]; };
 
 void main() {
     uint index = invocation_index();

@@ -9,12 +9,12 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
-layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
+uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) readonly buffer CameraPaths;
-layout(std430, binding = 3) readonly buffer LitCatchers;
+readonly buffer Closures;
+readonly buffer Rays;
+readonly buffer CameraPaths;
+readonly buffer LitCatchers;
 
 void main() {
     uint index = living_path();

@@ -15,23 +15,23 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "film/first_surface.glsl"
 #include "gbuffer/projections.glsl"
-layout(std430, binding = 10) readonly buffer Materials;
+readonly buffer Materials;
 #include "materials/medium.glsl"
-layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
+uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
-layout(std430, binding = 0) readonly buffer Camera;
+readonly buffer Camera;
 #include "gbuffer/sheared.glsl"
-layout(std430, binding = 1) readonly buffer Closures;
+readonly buffer Closures;
 #include "common/bsdf/stored_lobes.glsl"
 #include "film/light_colors.glsl"
-layout(std430, binding = 2) readonly buffer Rays;
-layout(std430, binding = 3) buffer CameraPaths;
+readonly buffer Rays;
+buffer CameraPaths;
 // iterations in the means; those with a surface
-layout(std430, binding = 5) buffer PassCounts;
-layout(std430, binding = 6) readonly buffer Hits;
-layout(std430, binding = 7) readonly buffer Attributes;
-layout(std430, binding = 11) readonly buffer ShadingInstances;
-layout(std430, binding = 12) readonly buffer Radiances;
+buffer PassCounts;
+readonly buffer Hits;
+readonly buffer Attributes;
+readonly buffer ShadingInstances;
+readonly buffer Radiances;
 
 // Lobes up to this alpha, and what is specular by more than this share, denoisers see through. As in Cycles.
 const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;

@@ -3,9 +3,9 @@
 // parameters; pixels are those of the band.
 
 #include <Passes>
-layout(std430, binding = 4) buffer PassValues;
+buffer PassValues;
 // Of a band's paths before they are scattered: radiance, and what they are, as flags.
-layout(std430, binding = 8) buffer PassPaths { vec4 pass_paths[]; };
+buffer PassPaths { vec4 pass_paths[]; };
 const uint PASS_PATH_HIT = 1u, PASS_PATH_STRAIGHT = 2u, PASS_PATH_DENOISED = 4u;
 
 bool is_on(uint which) { return (parameters.passes & (1u << which)) != 0u; }

@@ -7,10 +7,10 @@ layout(local_size_x = 64) in;
 
 #include <PassParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { PassParameters parameters; };
+uniform Parameters { PassParameters parameters; };
 #include "light_passes/light_passes.glsl"
-layout(std430, binding = 0) readonly buffer Importons;
-layout(std430, binding = 9) readonly buffer Radiances;
+readonly buffer Importons;
+readonly buffer Radiances;
 
 void main() {
     uint index = living_path();

@@ -7,10 +7,10 @@ layout(local_size_x = 64) in;
 #include <FoundParameters>
 #include "common/invocation.glsl"
 #include "common/gathering.glsl"
-layout(std140, binding = 0) uniform Parameters { FoundParameters parameters; };
+uniform Parameters { FoundParameters parameters; };
 #include "splat_sums/read.glsl"
-layout(std430, binding = 0) buffer FoundRadiances;
-layout(std430, binding = 2) readonly buffer GatheringVertices;
+buffer FoundRadiances;
+readonly buffer GatheringVertices;
 
 void main() {
     uint index = invocation_index();

@@ -15,9 +15,9 @@ layout(local_size_x = 64) in;
 #include "common/geometry.glsl"
 #include "common/random.glsl"
 #include "common/gathering.glsl"
-layout(std140, binding = 0) uniform Parameters { ShareParameters parameters; };
-layout(std430, binding = 0) readonly buffer GatheringVertices;
-layout(std430, binding = 1) readonly buffer FoundRadiances;
+uniform Parameters { ShareParameters parameters; };
+readonly buffer GatheringVertices;
+readonly buffer FoundRadiances;
 vec4 place_of(uint index) { return vec4(gathering_vertices[index].position, gathering_vertices[index].shared_radius); }
 uint normal_of(uint index) { return gathering_vertices[index].normal; }
 vec3 weight_of(uint index) { return gathering_vertices[index].weight; }
@@ -25,7 +25,7 @@ uvec4 hit_of(uint index) {
     return uvec4(floatBitsToUint(gathering_vertices[index].hit), gathering_vertices[index].hit_normal);
 }
 vec3 found_by(uint index) { return found_radiances[index].rgb; }
-layout(std430, binding = 2) buffer Radiances;
+buffer Radiances;
 
 // How far the normals of neighbors may part, as a cosine, and how far one may lie off the other's tangent plane in
 // radii. Normals must be nearer to each other than those of photons and importons.

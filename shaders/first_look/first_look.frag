@@ -5,9 +5,9 @@
 #include "gbuffer/projections.glsl"
 #include <FirstLookParameters>
 
-layout(std140, binding = 0) uniform Parameters { FirstLookParameters parameters; };
-layout(std430, binding = 0) readonly buffer Camera;
-layout(std430, binding = 3) readonly buffer PlainSurfaces;
+uniform Parameters { FirstLookParameters parameters; };
+readonly buffer Camera;
+readonly buffer PlainSurfaces;
 #include "gbuffer/rasterize.glsl"
 
 flat in uint material;

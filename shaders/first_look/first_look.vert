@@ -7,12 +7,12 @@
 #include <FirstLookDrawn>
 #include "common/geometry.glsl"
 
-layout(std140, binding = 0) uniform Parameters { FirstLookParameters parameters; };
-layout(std430, binding = 0) readonly buffer Camera;
-layout(std430, binding = 1) readonly buffer Triangles;
-layout(std430, binding = 2) readonly buffer Attributes;
-layout(std430, binding = 3) readonly buffer PlainSurfaces;
-layout(std430, binding = 4) readonly buffer InstanceOpacities;
+uniform Parameters { FirstLookParameters parameters; };
+readonly buffer Camera;
+readonly buffer Triangles;
+readonly buffer Attributes;
+readonly buffer PlainSurfaces;
+readonly buffer InstanceOpacities;
 #include "gbuffer/rasterize.glsl"
 
 flat out uint material;

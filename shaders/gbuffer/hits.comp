@@ -6,12 +6,12 @@ layout(local_size_x = 64) in;
 
 #include "common/invocation.glsl"
 #include "common/camera_path.glsl"
-layout(binding = 0) uniform sampler2D visibility;
-layout(std430, binding = 0) readonly buffer Camera;
-layout(std430, binding = 1) readonly buffer Triangles;
-layout(std430, binding = 2) writeonly buffer Rays;
-layout(std430, binding = 3) writeonly buffer Hits;
-layout(std430, binding = 4) writeonly buffer CameraPaths;
+uniform sampler2D visibility;
+readonly buffer Camera;
+readonly buffer Triangles;
+writeonly buffer Rays;
+writeonly buffer Hits;
+writeonly buffer CameraPaths;
 #include "gbuffer/camera_ray.glsl"
 #include "common/intersection.glsl"
 

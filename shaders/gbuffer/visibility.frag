@@ -3,7 +3,7 @@
 // The number of the nearest triangle, as two 16-bit parts that floats hold exactly.
 
 #include "gbuffer/projections.glsl"
-layout(std430, binding = 0) readonly buffer Camera;
+readonly buffer Camera;
 #include "gbuffer/rasterize.glsl"
 
 flat in uint triangle;

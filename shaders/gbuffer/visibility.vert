@@ -3,8 +3,8 @@
 // DirectCameraHits: every triangle, projected by the camera of the band.
 
 #include "gbuffer/projections.glsl"
-layout(std430, binding = 0) readonly buffer Camera;
-layout(std430, binding = 1) readonly buffer Triangles;
+readonly buffer Camera;
+readonly buffer Triangles;
 #include "gbuffer/rasterize.glsl"
 
 flat out uint triangle;

@@ -7,11 +7,11 @@ layout(local_size_x = 64) in;
 #include <DisplaceParameters>
 #include <DisplacedVertex>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { DisplaceParameters parameters; };
+uniform Parameters { DisplaceParameters parameters; };
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
-layout(std430, binding = 0) readonly buffer DisplacedVertices { DisplacedVertex displaced_vertices[]; };
-layout(std430, binding = 1) writeonly buffer Offsets { vec4 offsets[]; };
+readonly buffer DisplacedVertices { DisplacedVertex displaced_vertices[]; };
+writeonly buffer Offsets { vec4 offsets[]; };
 
 #include "materials/generated.glsl"
 

@@ -9,17 +9,17 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/geometry.glsl"
 
-layout(std140, binding = 0) uniform Parameters { GatherParameters parameters; };
-layout(std430, binding = 0) readonly buffer Instances { InstanceEntry instances[]; };
-layout(std430, binding = 1) readonly buffer Positions { float positions[]; };
-layout(std430, binding = 2) readonly buffer CornerVertices { uint corner_vertices[]; };
-layout(std430, binding = 3) readonly buffer CornerNormals { float corner_normals[]; };
-layout(std430, binding = 4) readonly buffer CornerUvs { vec2 corner_uvs[]; };
-layout(std430, binding = 5) readonly buffer TriangleCorners { uint triangle_corners[]; };
-layout(std430, binding = 6) readonly buffer TriangleSlots { uint triangle_slots[]; };
-layout(std430, binding = 7) readonly buffer SlotMaterials { uint slot_materials[]; };
-layout(std430, binding = 8) writeonly buffer Triangles;
-layout(std430, binding = 9) writeonly buffer Attributes;
+uniform Parameters { GatherParameters parameters; };
+readonly buffer Instances { InstanceEntry instances[]; };
+readonly buffer Positions { float positions[]; };
+readonly buffer CornerVertices { uint corner_vertices[]; };
+readonly buffer CornerNormals { float corner_normals[]; };
+readonly buffer CornerUvs { vec2 corner_uvs[]; };
+readonly buffer TriangleCorners { uint triangle_corners[]; };
+readonly buffer TriangleSlots { uint triangle_slots[]; };
+readonly buffer SlotMaterials { uint slot_materials[]; };
+writeonly buffer Triangles;
+writeonly buffer Attributes;
 
 #include <MeshArrays>
 

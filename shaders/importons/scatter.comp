@@ -18,20 +18,20 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
-layout(std430, binding = 10) readonly buffer Materials;
+readonly buffer Materials;
 #include "materials/medium.glsl"
-layout(std140, binding = 0) uniform Parameters { ScatterImportonsParameters parameters; };
+uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
+readonly buffer Closures;
 #include "common/bsdf/stored_lobes.glsl"
-layout(std430, binding = 1) buffer Rays;
-layout(std430, binding = 2) buffer CameraPaths;
-layout(std430, binding = 3) buffer Importons;
-layout(std430, binding = 12) readonly buffer LitCatchers;
-layout(std430, binding = 11) buffer GatheringVertices;
-layout(std430, binding = 8) buffer Radiances;
-layout(std430, binding = 9) readonly buffer Camera;
-layout(std430, binding = 15) readonly buffer RadiusFactors;
+buffer Rays;
+buffer CameraPaths;
+buffer Importons;
+readonly buffer LitCatchers;
+buffer GatheringVertices;
+buffer Radiances;
+readonly buffer Camera;
+readonly buffer RadiusFactors;
 #include "importons/radius.glsl"
 #include "importons/round_shapes.glsl"
 #include "importons/scattered_at.glsl"

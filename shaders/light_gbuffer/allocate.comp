@@ -5,7 +5,7 @@ layout(local_size_x = 64) in;
 
 #include <LightGBufferParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { LightGBufferParameters parameters; };
+uniform Parameters { LightGBufferParameters parameters; };
 #define TEXELS_ACCESS
 #include "light_gbuffer/views.glsl"
 #include "light_gbuffer/jobs.glsl"

@@ -4,7 +4,7 @@
 layout(local_size_x = 64) in;
 
 #include <FirstHitsParameters>
-layout(std140, binding = 0) uniform Parameters { FirstHitsParameters parameters; };
+uniform Parameters { FirstHitsParameters parameters; };
 #include "common/invocation.glsl"
 #include "common/intersection.glsl"
 #include "common/light_sets.glsl"
@@ -13,10 +13,10 @@ layout(std140, binding = 0) uniform Parameters { FirstHitsParameters parameters;
 #include "light_gbuffer/views.glsl"
 #include "living_paths/kept.glsl"
 #include "acceleration/triangles.glsl"
-layout(std430, binding = 3) readonly buffer Rays;
-layout(std430, binding = 5) writeonly buffer Hits;
-layout(std430, binding = 2) readonly buffer TexelTriangles;
-layout(std430, binding = 6) readonly buffer LightViewRanges { uvec2 view_ranges[]; };  // of each light: first, count
+readonly buffer Rays;
+writeonly buffer Hits;
+readonly buffer TexelTriangles;
+readonly buffer LightViewRanges { uvec2 view_ranges[]; };  // of each light: first, count
 
 // The face of a cube, in the order of to_face (deep_cubemap/faces.glsl).
 uint face_of(vec3 direction) {

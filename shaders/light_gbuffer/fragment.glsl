@@ -2,7 +2,7 @@
 // A fragment is a texel of a job's rectangle: whether the triangle is in its cone, exact but for an outward margin, and
 // over which depths. Not by the rasterizer's own rules: what lies between texels' centers must not be missed.
 #include <LightGBufferParameters>
-layout(std140, binding = 0) uniform Parameters { LightGBufferParameters parameters; };
+uniform Parameters { LightGBufferParameters parameters; };
 #define TEXELS_ACCESS
 #include "light_gbuffer/views.glsl"
 #include "light_gbuffer/jobs.glsl"

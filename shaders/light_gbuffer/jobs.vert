@@ -3,7 +3,7 @@
 // Two triangles for each job, along the borders of its rectangle of texels. Views lie side by side in rows. On pixel
 // borders no rule of any rasterizer can lose a texel.
 #include <LightGBufferParameters>
-layout(std140, binding = 0) uniform Parameters { LightGBufferParameters parameters; };
+uniform Parameters { LightGBufferParameters parameters; };
 #include "light_gbuffer/jobs.glsl"
 #include "common/quad_corners.glsl"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which triangles these are, where a photon may test them all.
 #include "light_gbuffer/fragment.glsl"
-layout(std430, binding = 3) writeonly buffer TexelTriangles;
+writeonly buffer TexelTriangles;
 
 void main() {
     TexelFragment found = texel_fragment();

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 #include <LightGBufferParameters>
 #include "common/invocation.glsl"
 #include "common/finite.glsl"
-layout(std140, binding = 0) uniform Parameters { LightGBufferParameters parameters; };
+uniform Parameters { LightGBufferParameters parameters; };
 #define TEXELS_ACCESS readonly
 #include "light_gbuffer/views.glsl"
 #include "light_gbuffer/jobs.glsl"

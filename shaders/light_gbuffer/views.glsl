@@ -4,8 +4,8 @@
 // Takes the storage block bindings 0 and 1. Needs the member side of the parameters.
 #include <LightView>
 #include <LightTexel>
-layout(std430, binding = 0) readonly buffer LightViews { LightView light_views[]; };
-layout(std430, binding = 1) TEXELS_ACCESS buffer LightTexels { LightTexel light_texels[]; };
+readonly buffer LightViews { LightView light_views[]; };
+TEXELS_ACCESS buffer LightTexels { LightTexel light_texels[]; };
 
 // More than this would take as long to test as tracing does.
 const uint MOST_TRIANGLES = 24u;

@@ -6,11 +6,11 @@ layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { LightGroupParameters parameters; };
+uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
 #include "light_groups/read_group_sum.glsl"
-layout(std430, binding = 0) readonly buffer Radiances;
-layout(std430, binding = 1) buffer GroupValues;
+readonly buffer Radiances;
+buffer GroupValues;
 
 void main() {
     uint index = invocation_index();

@@ -6,14 +6,14 @@ layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { LightGroupParameters parameters; };
+uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
-layout(std430, binding = 0) readonly buffer Visibility;
-layout(std430, binding = 1) readonly buffer Contributions;
-layout(std430, binding = 2) readonly buffer LightSplits;
-layout(std430, binding = 3) readonly buffer LightTriangles;
-layout(std430, binding = 6) readonly buffer LightGroupTable;
-layout(std430, binding = 7) readonly buffer Attributes;
+readonly buffer Visibility;
+readonly buffer Contributions;
+readonly buffer LightSplits;
+readonly buffer LightTriangles;
+readonly buffer LightGroupTable;
+readonly buffer Attributes;
 #include "light_groups/table.glsl"
 
 void main() {

@@ -7,11 +7,11 @@ layout(local_size_x = 64) in;
 #include <LightGroupParameters>
 #include "common/invocation.glsl"
 #include "common/gathering.glsl"
-layout(std140, binding = 0) uniform Parameters { LightGroupParameters parameters; };
+uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
 #include "light_groups/read_group_sum.glsl"
-layout(std430, binding = 0) readonly buffer GatheringVertices;
-layout(std430, binding = 1) writeonly buffer FoundRadiances;
+readonly buffer GatheringVertices;
+writeonly buffer FoundRadiances;
 
 void main() {
     uint index = invocation_index();

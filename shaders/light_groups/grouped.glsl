@@ -2,7 +2,7 @@
 // Light of an iteration by light group, W/(m^2 sr): for each pixel of the band, for each group, what the pixel has got
 // but for photons, and what its gathering ray found so. Needs the member groups of the parameters.
 #include <LightGroups>
-layout(std430, binding = 8) buffer GroupedLight;
+buffer GroupedLight;
 
 uint grouped_place(uint pixel, uint group, bool by_ray) {
     return 6u * (parameters.groups * pixel + group) + (by_ray ? 3u : 0u);

@@ -11,17 +11,17 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
-layout(std140, binding = 0) uniform Parameters { PassedLightParameters parameters; };
+uniform Parameters { PassedLightParameters parameters; };
 #include "light_groups/grouped.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) readonly buffer CameraPaths;
-layout(std430, binding = 3) readonly buffer Radiances;
-layout(std430, binding = 9) writeonly buffer SeenLight;
-layout(std430, binding = 12) readonly buffer LightGroupTable;
-layout(std430, binding = 11) readonly buffer GatheringVertices;
+readonly buffer Closures;
+readonly buffer Rays;
+readonly buffer CameraPaths;
+readonly buffer Radiances;
+writeonly buffer SeenLight;
+readonly buffer LightGroupTable;
+readonly buffer GatheringVertices;
 #include "importons/scattered_at.glsl"
-layout(std430, binding = 10) readonly buffer Materials;
+readonly buffer Materials;
 #include "materials/medium.glsl"
 
 uint path_index;

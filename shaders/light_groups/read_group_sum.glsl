@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "light_groups/group_sums.glsl"
 #include "splat_sums/sums.glsl"
-layout(std430, binding = 5) readonly buffer GroupSums;
+readonly buffer GroupSums;
 
 // What a pixel took of the photons of a group, in quanta.
 vec3 read_group_sum(uint pixel, uint group, bool by_ray) {

@@ -7,13 +7,13 @@ layout(local_size_x = 64) in;
 #include <LightGroupParameters>
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
-layout(std140, binding = 0) uniform Parameters { LightGroupParameters parameters; };
+uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 3) readonly buffer Radiances;
-layout(std430, binding = 9) readonly buffer SeenLight;
-layout(std430, binding = 6) readonly buffer LightGroupTable;
-layout(std430, binding = 7) readonly buffer Attributes;
+readonly buffer Closures;
+readonly buffer Radiances;
+readonly buffer SeenLight;
+readonly buffer LightGroupTable;
+readonly buffer Attributes;
 #include "light_groups/table.glsl"
 
 void main() {

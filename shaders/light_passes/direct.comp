@@ -6,13 +6,13 @@ layout(local_size_x = 64) in;
 
 #include <LightPassParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { LightPassParameters parameters; };
+uniform Parameters { LightPassParameters parameters; };
 #include "light_passes/light_passes.glsl"
-layout(std430, binding = 0) readonly buffer Visibility;
-layout(std430, binding = 1) readonly buffer Contributions;
-layout(std430, binding = 2) readonly buffer LightSplits;
-layout(std430, binding = 3) readonly buffer Importons;
-layout(std430, binding = 5) buffer FoundCaustics;
+readonly buffer Visibility;
+readonly buffer Contributions;
+readonly buffer LightSplits;
+readonly buffer Importons;
+buffer FoundCaustics;
 
 void main() {
     uint index = living_path();

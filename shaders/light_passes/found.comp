@@ -9,13 +9,13 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/microfacet.glsl"
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
-layout(std140, binding = 0) uniform Parameters { LightPassParameters parameters; };
-layout(std430, binding = 0) readonly buffer GatheringVertices;
-layout(std430, binding = 1) readonly buffer Importons;
-layout(std430, binding = 2) readonly buffer LightSums;
+uniform Parameters { LightPassParameters parameters; };
+readonly buffer GatheringVertices;
+readonly buffer Importons;
+readonly buffer LightSums;
 #include "light_passes/read_light_sum.glsl"
-layout(std430, binding = 3) writeonly buffer FoundDirect { vec4 found_direct[]; };
-layout(std430, binding = 5) buffer FoundCaustics;
+writeonly buffer FoundDirect { vec4 found_direct[]; };
+buffer FoundCaustics;
 
 void main() {
     uint index = invocation_index();

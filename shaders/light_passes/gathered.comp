@@ -7,11 +7,11 @@ layout(local_size_x = 64) in;
 #include <LightPassParameters>
 #include <GatheredParts>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { LightPassParameters parameters; };
+uniform Parameters { LightPassParameters parameters; };
 #include "light_passes/light_passes.glsl"
-layout(std430, binding = 0) readonly buffer GatheringVertices;
-layout(std430, binding = 1) readonly buffer Importons;
-layout(std430, binding = 2) readonly buffer Radiances;
+readonly buffer GatheringVertices;
+readonly buffer Importons;
+readonly buffer Radiances;
 
 void main() {
     uint index = invocation_index();

@@ -6,9 +6,9 @@ layout(local_size_x = 64) in;
 
 #include <LightPassParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { LightPassParameters parameters; };
+uniform Parameters { LightPassParameters parameters; };
 #include "light_passes/light_passes.glsl"
-layout(std430, binding = 0) readonly buffer LightSums;
+readonly buffer LightSums;
 #include "light_passes/read_light_sum.glsl"
 
 vec3 light_of(uint pixel, uint sum) { return read_light_sum(pixel, sum, parameters.light_sums) * parameters.quantum; }

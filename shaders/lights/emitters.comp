@@ -9,13 +9,13 @@ layout(local_size_x = 64) in;
 #include <EmittersParameters>
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { EmittersParameters parameters; };
-layout(std430, binding = 0) readonly buffer Rays;
-layout(std430, binding = 1) readonly buffer LightTriangles;
-layout(std430, binding = 2) readonly buffer Triangles;
+uniform Parameters { EmittersParameters parameters; };
+readonly buffer Rays;
+readonly buffer LightTriangles;
+readonly buffer Triangles;
 #include "lights/emitter_traits.glsl"
-layout(std430, binding = 3) writeonly buffer EmitterRays { Ray emitter_rays[]; };
-layout(std430, binding = 4) writeonly buffer EmitterHits { Hit emitter_hits[]; };
+writeonly buffer EmitterRays { Ray emitter_rays[]; };
+writeonly buffer EmitterHits { Hit emitter_hits[]; };
 
 void main() {
     uint index = living_path();

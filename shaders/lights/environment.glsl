@@ -3,9 +3,9 @@
 // environment_height of the parameters; width 0 is a constant world.
 
 #include "common/sampling.glsl"
-layout(binding = 0) uniform sampler2D environment_image;
-layout(binding = 1) uniform sampler2D environment_seen;
-layout(std430, binding = 7) readonly buffer EnvironmentDistribution { float environment_distribution[]; };
+uniform sampler2D environment_image;
+uniform sampler2D environment_seen;
+readonly buffer EnvironmentDistribution { float environment_distribution[]; };
 
 // Cycles' equirectangular map; v grows upwards.
 vec2 direction_to_equirectangular(vec3 d) {

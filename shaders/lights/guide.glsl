@@ -3,7 +3,7 @@
 // cells, and those from which photons come to importons are chosen more often (after Hachisuka and Jensen 2011).
 #include "common/whole_numbers.glsl"
 
-layout(std430, binding = 3) readonly buffer Guide { uint guide_starts[]; };  // in 2^-32, of each cell's probabilities
+readonly buffer Guide { uint guide_starts[]; };  // in 2^-32, of each cell's probabilities
 
 uint guide_cells(Light light) { return light.cells.x * light.cells.y * light.cells.z * light.cells.w; }
 

@@ -8,12 +8,12 @@ layout(local_size_x = 64) in;
 #include <LearnParameters>
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { LearnParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons;
-layout(std430, binding = 1) buffer PhotonCells;
-layout(std430, binding = 2) buffer Tallies { uvec2 tallies[]; };  // left, contributed
+uniform Parameters { LearnParameters parameters; };
+readonly buffer Photons;
+buffer PhotonCells;
+buffer Tallies { uvec2 tallies[]; };  // left, contributed
 
-layout(std430, binding = 3) readonly buffer PhotonRange;
+readonly buffer PhotonRange;
 
 #include <GuideCells>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the nodes of lights give by place or direction (integrator/lights/light_maps.py).
 
-layout(binding = 2) uniform sampler2D light_maps;
+uniform sampler2D light_maps;
 
 #include <MapShapes>
 

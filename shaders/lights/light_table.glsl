@@ -2,7 +2,7 @@
 // The lights, and whose photons are whose. Needs the member light_count of the parameters.
 
 #include <Light>
-layout(std430, binding = 4) readonly buffer Lights { Light lights[]; };
+readonly buffer Lights { Light lights[]; };
 
 // Lights hold consecutive ranges of the photons.
 uint light_of(uint photon) {

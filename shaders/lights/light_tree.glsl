@@ -6,7 +6,7 @@
 #include "lights/lights.glsl"
 #include "common/intersection.glsl"
 #include "common/light_sets.glsl"
-layout(std430, binding = 13) readonly buffer LightNodes { LightNode light_nodes[]; };
+readonly buffer LightNodes { LightNode light_nodes[]; };
 
 // Random numbers of 24 bits last for so many levels.
 const uint LEVELS_OF_A_NUMBER = 12u;

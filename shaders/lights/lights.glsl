@@ -8,9 +8,9 @@
 #include "common/world_light.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
-layout(std430, binding = 5) readonly buffer EmissiveTriangles;
+readonly buffer EmissiveTriangles;
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
-layout(std430, binding = 6) readonly buffer Triangles;
+readonly buffer Triangles;
 #include "lights/emitter_traits.glsl"
 
 #include <Lights>

@@ -6,10 +6,10 @@ layout(local_size_x = 64) in;
 
 #include <MarkParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { MarkParameters parameters; };
-layout(std430, binding = 0) readonly buffer EmissiveTriangles;
-layout(std430, binding = 1) buffer Triangles;
-layout(std430, binding = 2) readonly buffer EmitterLeaves { uint emitter_leaves[]; };  // nodes of the light tree
+uniform Parameters { MarkParameters parameters; };
+readonly buffer EmissiveTriangles;
+buffer Triangles;
+readonly buffer EmitterLeaves { uint emitter_leaves[]; };  // nodes of the light tree
 
 void main() {
     uint index = invocation_index();

@@ -8,8 +8,8 @@ layout(local_size_x = 64) in;
 
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) buffer Contributions;
+readonly buffer Closures;
+buffer Contributions;
 
 void main() {
     uint index = living_path();

@@ -7,8 +7,8 @@ layout(local_size_x = 64) in;
 
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) buffer PhotonPaths;
+readonly buffer Closures;
+buffer PhotonPaths;
 
 void main() {
     uint index = living_path();

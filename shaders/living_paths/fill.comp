@@ -6,8 +6,8 @@ layout(local_size_x = 64) in;
 
 #include <CountParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
-layout(std430, binding = 0) buffer KeptPaths;
+uniform Parameters { CountParameters parameters; };
+buffer KeptPaths;
 
 void main() {
     uint index = invocation_index();

@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Rays;
+readonly buffer Rays;
 #include "living_paths/kept.glsl"
 
 void main() {

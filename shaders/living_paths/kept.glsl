@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A list of paths that grows, with the arguments of a dispatch over it; it begins empty.
-layout(std430, binding = 15) buffer KeptPaths;
+buffer KeptPaths;
 
 #include <Dispatch>
 

@@ -3,7 +3,7 @@
 #include "common/whole_numbers.glsl"
 #include <AlbedoTables>
 
-layout(std430, binding = 9) readonly buffer AlbedoTables { float albedo_tables[]; };
+readonly buffer AlbedoTables { float albedo_tables[]; };
 
 float table_plane(int first, int size, float roughness, float cosine) {
     vec2 p = clamp(vec2(cosine, roughness), 0.0, 1.0) * float(size - 1);

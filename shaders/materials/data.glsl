@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Constants and tables of all materials.
 
-layout(std430, binding = 6) readonly buffer MaterialData { float material_data[]; };
+readonly buffer MaterialData { float material_data[]; };
 
 float constant_float(uint at) { return material_data[at]; }
 vec3 constant_vec3(uint at) { return vec3(material_data[at], material_data[at + 1u], material_data[at + 2u]); }

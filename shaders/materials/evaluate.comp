@@ -7,12 +7,12 @@ layout(local_size_x = 64) in;
 
 #include <EvaluateParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { EvaluateParameters parameters; };
+uniform Parameters { EvaluateParameters parameters; };
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
 #include "materials/light_surface.glsl"
-layout(std430, binding = 0) writeonly buffer Emissions { vec4 emissions[]; };
+writeonly buffer Emissions { vec4 emissions[]; };
 
 #include "materials/generated.glsl"
 

@@ -7,7 +7,7 @@
 #include <NodeRay>
 #include <NodeQuestions>
 #include <PathKinds>
-layout(std430, binding = 15) buffer NodeRays;
+buffer NodeRays;
 
 uint path_of_node_rays;
 

@@ -3,11 +3,11 @@
 
 #include <ShadingInstance>
 #include "common/ray_kinds.glsl"
-layout(std430, binding = 3) readonly buffer Triangles;
-layout(std430, binding = 4) readonly buffer Attributes;
+readonly buffer Triangles;
+readonly buffer Attributes;
 #include "common/triangle_normal.glsl"
-layout(std430, binding = 10) readonly buffer ShadingInstances;
-layout(std430, binding = 11) readonly buffer AttributeValues { uint attribute_values[]; };
+readonly buffer ShadingInstances;
+readonly buffer AttributeValues { uint attribute_values[]; };
 
 const uint NO_INSTANCE = 0xffffffffu;
 

@@ -3,8 +3,8 @@
 
 #include "common/half.glsl"
 #include <ImageEntry>
-layout(std430, binding = 7) readonly buffer Images { ImageEntry images[]; };
-layout(std430, binding = 8) readonly buffer Texels { uint texels[]; };
+readonly buffer Images { ImageEntry images[]; };
+readonly buffer Texels { uint texels[]; };
 
 #include <TexelFormats>
 #include <ImageSampling>

@@ -11,14 +11,14 @@ layout(local_size_x = 64) in;
 #include <EnterMediaParameters>
 #include "common/living_paths.glsl"
 #include "common/camera_path.glsl"
-layout(std140, binding = 0) uniform Parameters { EnterMediaParameters parameters; };
-layout(std430, binding = 0) readonly buffer MediaOfSources;
-layout(std430, binding = 1) readonly buffer Attributes;
-layout(std430, binding = 2) readonly buffer MediumBoxes;
-layout(std430, binding = 3) readonly buffer Rays;
-layout(std430, binding = 5) buffer CameraPaths;
-layout(std430, binding = 6) readonly buffer Hits;
-layout(std430, binding = 7) readonly buffer Materials;
+uniform Parameters { EnterMediaParameters parameters; };
+readonly buffer MediaOfSources;
+readonly buffer Attributes;
+readonly buffer MediumBoxes;
+readonly buffer Rays;
+buffer CameraPaths;
+readonly buffer Hits;
+readonly buffer Materials;
 #include "media/crossings.glsl"
 
 uint media_before(Ray ray, uint triangle) {

@@ -10,15 +10,15 @@ layout(local_size_x = 64) in;
 
 #include <EnterMediaParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { EnterMediaParameters parameters; };
-layout(std430, binding = 0) readonly buffer MediaOfSources;
-layout(std430, binding = 1) readonly buffer Attributes;
-layout(std430, binding = 2) readonly buffer MediumBoxes;
-layout(std430, binding = 3) readonly buffer Rays;
+uniform Parameters { EnterMediaParameters parameters; };
+readonly buffer MediaOfSources;
+readonly buffer Attributes;
+readonly buffer MediumBoxes;
+readonly buffer Rays;
 #include "lights/light_table.glsl"
 #include <Lights>
-layout(std430, binding = 5) buffer PhotonPaths;
-layout(std430, binding = 7) readonly buffer Materials;
+buffer PhotonPaths;
+readonly buffer Materials;
 #include "media/crossings.glsl"
 
 void main() {

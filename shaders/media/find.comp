@@ -9,12 +9,12 @@ layout(local_size_x = 64) in;
 
 #include <FindMediaParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { FindMediaParameters parameters; };
-layout(std430, binding = 0) writeonly buffer MediaOfSources;
-layout(std430, binding = 1) readonly buffer Attributes;
-layout(std430, binding = 2) readonly buffer MediumBoxes;
+uniform Parameters { FindMediaParameters parameters; };
+writeonly buffer MediaOfSources;
+readonly buffer Attributes;
+readonly buffer MediumBoxes;
 #include "lights/light_table.glsl"
-layout(std430, binding = 7) readonly buffer Materials;
+readonly buffer Materials;
 #include "media/crossings.glsl"
 
 void main() {

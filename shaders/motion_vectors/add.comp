@@ -11,17 +11,17 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/finite.glsl"
 #include "film/first_surface.glsl"
-layout(std140, binding = 0) uniform Parameters { MotionVectorParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) readonly buffer CameraPaths;
-layout(std430, binding = 3) readonly buffer Hits;
-layout(std430, binding = 4) readonly buffer Triangles;
-layout(std430, binding = 5) readonly buffer TrianglesBefore { vec4 triangles_before[]; };
-layout(std430, binding = 6) readonly buffer TrianglesAfter { vec4 triangles_after[]; };
-layout(std430, binding = 7) readonly buffer PassCounts;
-layout(std430, binding = 8) buffer MotionVectors { vec4 motion_vectors[]; };
-layout(std430, binding = 9) readonly buffer Camera;
+uniform Parameters { MotionVectorParameters parameters; };
+readonly buffer Closures;
+readonly buffer Rays;
+readonly buffer CameraPaths;
+readonly buffer Hits;
+readonly buffer Triangles;
+readonly buffer TrianglesBefore { vec4 triangles_before[]; };
+readonly buffer TrianglesAfter { vec4 triangles_after[]; };
+readonly buffer PassCounts;
+buffer MotionVectors { vec4 motion_vectors[]; };
+readonly buffer Camera;
 #include "gbuffer/panorama_place.glsl"
 
 vec3 between(vec3 v0, vec3 v1, vec3 v2, Hit hit) {

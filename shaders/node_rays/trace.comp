@@ -14,13 +14,13 @@ layout(local_size_x = 64) in;
 #include "common/low_discrepancy.glsl"
 #include "common/differential_frame.glsl"
 #include "common/sampling.glsl"
-layout(std140, binding = 0) uniform Parameters { NodeRaysParameters parameters; };
-layout(std430, binding = 0) buffer NodeRays;
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) readonly buffer Hits;
-layout(std430, binding = 3) readonly buffer Attributes;
+uniform Parameters { NodeRaysParameters parameters; };
+buffer NodeRays;
+readonly buffer Rays;
+readonly buffer Hits;
+readonly buffer Attributes;
 #include "common/triangle_normal.glsl"
-layout(std430, binding = 4) readonly buffer HitOrder;
+readonly buffer HitOrder;
 
 #define TRACES_INSTANCES
 #include TRAVERSAL

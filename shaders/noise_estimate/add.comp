@@ -6,10 +6,10 @@ layout(local_size_x = 64) in;
 
 #include <HalfParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { HalfParameters parameters; };
+uniform Parameters { HalfParameters parameters; };
 #include "splat_sums/read.glsl"
-layout(std430, binding = 0) readonly buffer Radiances;
-layout(std430, binding = 2) buffer HalfMeans;
+readonly buffer Radiances;
+buffer HalfMeans;
 
 void main() {
     uint index = invocation_index();

@@ -8,10 +8,10 @@ layout(local_size_x = 64) in;
 #include <NoiseBlocks>
 #include "common/finite.glsl"
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { NoiseParameters parameters; };
-layout(std430, binding = 0) readonly buffer Film;
-layout(std430, binding = 1) readonly buffer HalfMeans;
-layout(std430, binding = 2) writeonly buffer Noises { float noises[]; };
+uniform Parameters { NoiseParameters parameters; };
+readonly buffer Film;
+readonly buffer HalfMeans;
+writeonly buffer Noises { float noises[]; };
 
 const float EPSILON = 1e-4;
 

@@ -7,8 +7,8 @@
 layout(local_size_x = 64) in;
 
 #include "noise_filter/film.glsl"
-layout(binding = 0) uniform sampler2D signal_image;
-layout(std430, binding = 0) writeonly buffer Signals;
+uniform sampler2D signal_image;
+writeonly buffer Signals;
 
 const uint AROUND = 8u, DARKER_KEPT = 2u;
 // How bright a speckle is over what is around: that of photons is uneven as well.

@@ -6,10 +6,10 @@
 #include "common/finite.glsl"
 #include "common/invocation.glsl"
 #include "common/luminance.glsl"
-layout(std140, binding = 0) uniform Parameters { NoiseFilterParameters parameters; };
-layout(std430, binding = 2) readonly buffer Film;
-layout(std430, binding = 3) readonly buffer PhotonLight;
-layout(std430, binding = 4) readonly buffer PassValues;
+uniform Parameters { NoiseFilterParameters parameters; };
+readonly buffer Film;
+readonly buffer PhotonLight;
+readonly buffer PassValues;
 
 const vec3 DARKEST_ALBEDO = vec3(0.02);
 

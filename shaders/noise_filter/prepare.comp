@@ -6,8 +6,8 @@
 layout(local_size_x = 64) in;
 
 #include "noise_filter/film.glsl"
-layout(std430, binding = 0) writeonly buffer Signals;
-layout(std430, binding = 1) writeonly buffer Guides;
+writeonly buffer Signals;
+writeonly buffer Guides;
 
 const uint SAMPLES_THAT_TELL = 4u;
 const int REACH = 2;

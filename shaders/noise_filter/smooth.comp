@@ -8,10 +8,10 @@ layout(local_size_x = 64) in;
 #include <NoiseFilterParameters>
 #include "common/invocation.glsl"
 #include "common/luminance.glsl"
-layout(std140, binding = 0) uniform Parameters { NoiseFilterParameters parameters; };
-layout(binding = 0) uniform sampler2D signal_image;
-layout(binding = 1) uniform sampler2D guide_image;
-layout(std430, binding = 0) writeonly buffer Signals;
+uniform Parameters { NoiseFilterParameters parameters; };
+uniform sampler2D signal_image;
+uniform sampler2D guide_image;
+writeonly buffer Signals;
 
 const float KERNEL[2] = float[](0.5, 0.25);
 const float DEPTH_STEP = 0.01;

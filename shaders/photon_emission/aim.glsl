@@ -3,7 +3,7 @@
 // large room gets its share. The pdf of both ways together divides the flux (balance heuristic,
 // Veach 1997, section 9.2), so aiming moves noise and no energy. Needs the member target_count.
 
-layout(std430, binding = 2) readonly buffer Targets { vec4 targets[]; };  // bounding spheres
+readonly buffer Targets { vec4 targets[]; };  // bounding spheres
 
 // One photon of so many is aimed. The world lights rooms through their windows only: it keeps more
 // photons for that.

@@ -10,13 +10,13 @@ layout(local_size_x = 64) in;
 
 #include <CutParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { CutParameters parameters; };
+uniform Parameters { CutParameters parameters; };
 #include "lights/light_table.glsl"
 #include <Lights>
 #include TRAVERSAL
-layout(std430, binding = 0) buffer Rays;
-layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 2) buffer PhotonPaths;
+buffer Rays;
+readonly buffer Hits;
+buffer PhotonPaths;
 
 void main() {
     uint index = living_path();

@@ -10,14 +10,14 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { EmitParameters parameters; };
+uniform Parameters { EmitParameters parameters; };
 #include "photon_emission/photons.glsl"
-layout(std430, binding = 0) writeonly buffer Rays;
-layout(std430, binding = 1) writeonly buffer PhotonPaths;
-layout(std430, binding = 8) writeonly buffer PhotonCells;
+writeonly buffer Rays;
+writeonly buffer PhotonPaths;
+writeonly buffer PhotonCells;
 
-layout(std430, binding = 9) writeonly buffer PhotonOrigins;
-layout(std430, binding = 10) writeonly buffer PhotonDifferentials;
+writeonly buffer PhotonOrigins;
+writeonly buffer PhotonDifferentials;
 
 #include <GuideCells>
 

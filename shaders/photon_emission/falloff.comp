@@ -8,11 +8,11 @@ layout(local_size_x = 64) in;
 
 #include <FalloffParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { FalloffParameters parameters; };
+uniform Parameters { FalloffParameters parameters; };
 #include "lights/lights.glsl"
-layout(std430, binding = 0) buffer Rays;
-layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 2) buffer PhotonPaths;
+buffer Rays;
+readonly buffer Hits;
+buffer PhotonPaths;
 
 void main() {
     uint index = invocation_index();

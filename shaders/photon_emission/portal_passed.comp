@@ -9,12 +9,12 @@ layout(local_size_x = 64) in;
 #include <PortalPassedParameters>
 #include <PhotonFlags>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { PortalPassedParameters parameters; };
+uniform Parameters { PortalPassedParameters parameters; };
 #include "lights/lights.glsl"
-layout(std430, binding = 0) readonly buffer Rays;
-layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 2) readonly buffer PhotonPaths;
-layout(std430, binding = 3) buffer PhotonOrigins;
+readonly buffer Rays;
+readonly buffer Hits;
+readonly buffer PhotonPaths;
+buffer PhotonOrigins;
 
 void main() {
     uint index = living_path();

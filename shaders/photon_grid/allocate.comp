@@ -6,8 +6,8 @@ layout(local_size_x = 64) in;
 
 #include <AllocateParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { AllocateParameters parameters; };
-layout(std430, binding = 0) buffer Buckets;
+uniform Parameters { AllocateParameters parameters; };
+buffer Buckets;
 
 void main() {
     uint index = invocation_index();

@@ -7,9 +7,9 @@ layout(local_size_x = 64) in;
 #include <GroupParameters>
 #include "common/living_paths.glsl"
 #include "photon_grid/cells.glsl"
-layout(std140, binding = 0) uniform Parameters { GroupParameters parameters; };
-layout(std430, binding = 0) readonly buffer Importons;
-layout(std430, binding = 1) buffer Buckets;
+uniform Parameters { GroupParameters parameters; };
+readonly buffer Importons;
+buffer Buckets;
 
 void main() {
     uint index = living_path();

@@ -8,20 +8,20 @@ layout(local_size_x = 32) in;
 
 #include <GatherPhotonsParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { GatherPhotonsParameters parameters; };
+uniform Parameters { GatherPhotonsParameters parameters; };
 #include <Importon>
 #include <Photon>
-layout(std430, binding = 0) buffer Photons;
-layout(std430, binding = 1) readonly buffer Importons;
+buffer Photons;
+readonly buffer Importons;
 #include "common/importon.glsl"
 #include "photon_grid/grids.glsl"
 #include "splat_sums/roulette.glsl"
 #include "splat_sums/collect.glsl"
 #include "splat_sums/light.glsl"
-layout(std430, binding = 2) readonly buffer Buckets;
-layout(std430, binding = 3) readonly buffer SortedPhotons;
-layout(std430, binding = 7) readonly buffer Visits;
-layout(std430, binding = 8) buffer UnfinishedVisits {
+readonly buffer Buckets;
+readonly buffer SortedPhotons;
+readonly buffer Visits;
+buffer UnfinishedVisits {
     uint unfinished_groups[3];
     uint unfinished_count;
     uvec2 unfinished_visits[];

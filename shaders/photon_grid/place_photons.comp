@@ -7,12 +7,12 @@ layout(local_size_x = 64) in;
 #include <GridParameters>
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { GridParameters parameters; };
+uniform Parameters { GridParameters parameters; };
 #include "photon_grid/grids.glsl"
-layout(std430, binding = 0) readonly buffer Photons;
-layout(std430, binding = 1) readonly buffer StoredPhotons;
-layout(std430, binding = 2) buffer Buckets;
-layout(std430, binding = 3) writeonly buffer SortedPhotons;
+readonly buffer Photons;
+readonly buffer StoredPhotons;
+buffer Buckets;
+writeonly buffer SortedPhotons;
 
 void main() {
     uint index = invocation_index();

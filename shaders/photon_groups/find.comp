@@ -6,12 +6,12 @@ layout(local_size_x = 64) in;
 
 #include <PhotonGroupParameters>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { PhotonGroupParameters parameters; };
+uniform Parameters { PhotonGroupParameters parameters; };
 #include "lights/light_table.glsl"
-layout(std430, binding = 0) readonly buffer Rays;
-layout(std430, binding = 1) writeonly buffer PhotonGroups;
-layout(std430, binding = 6) readonly buffer LightGroupTable;
-layout(std430, binding = 7) readonly buffer Attributes;
+readonly buffer Rays;
+writeonly buffer PhotonGroups;
+readonly buffer LightGroupTable;
+readonly buffer Attributes;
 #include "light_groups/table.glsl"
 
 void main() {

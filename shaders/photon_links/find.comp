@@ -7,11 +7,11 @@ layout(local_size_x = 64) in;
 #include <PhotonLinkParameters>
 #include "common/constants.glsl"
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { PhotonLinkParameters parameters; };
+uniform Parameters { PhotonLinkParameters parameters; };
 #include "lights/light_table.glsl"
-layout(std430, binding = 0) readonly buffer Rays;
-layout(std430, binding = 1) writeonly buffer PhotonLinks;
-layout(std430, binding = 2) readonly buffer Triangles;
+readonly buffer Rays;
+writeonly buffer PhotonLinks;
+readonly buffer Triangles;
 #include "lights/emitter_traits.glsl"
 
 void main() {

@@ -10,11 +10,11 @@ layout(local_size_x = 64) in;
 #include "common/photon.glsl"
 #include "common/light_sets.glsl"
 #include "common/bsdf/closure.glsl"
-layout(std430, binding = 0) buffer Closures;
-layout(std430, binding = 1) readonly buffer PhotonPaths;
-layout(std430, binding = 2) readonly buffer PhotonLinks;
-layout(std430, binding = 3) readonly buffer LightLinks;
-layout(std430, binding = 4) readonly buffer Triangles;
+buffer Closures;
+readonly buffer PhotonPaths;
+readonly buffer PhotonLinks;
+readonly buffer LightLinks;
+readonly buffer Triangles;
 
 void main() {
     uint index = living_path();

@@ -7,9 +7,9 @@ layout(local_size_x = 64) in;
 #include <PhotonNoiseParameters>
 #include "common/invocation.glsl"
 #include "common/luminance.glsl"
-layout(std140, binding = 0) uniform Parameters { PhotonNoiseParameters parameters; };
-layout(std430, binding = 0) readonly buffer Radiances;
-layout(std430, binding = 1) buffer NoiseSamples;
+uniform Parameters { PhotonNoiseParameters parameters; };
+readonly buffer Radiances;
+buffer NoiseSamples;
 
 void main() {
     uint index = invocation_index();

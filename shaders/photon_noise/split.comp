@@ -8,12 +8,12 @@ layout(local_size_x = 64) in;
 #include <PhotonNoiseParameters>
 #include "common/invocation.glsl"
 #include "common/luminance.glsl"
-layout(std140, binding = 0) uniform Parameters { PhotonNoiseParameters parameters; };
+uniform Parameters { PhotonNoiseParameters parameters; };
 #include "splat_sums/read.glsl"
-layout(std430, binding = 0) buffer Radiances;
-layout(std430, binding = 2) buffer FoundRadiances;
-layout(std430, binding = 3) readonly buffer PhotonCounts;
-layout(std430, binding = 4) writeonly buffer NoiseSamples;
+buffer Radiances;
+buffer FoundRadiances;
+readonly buffer PhotonCounts;
+writeonly buffer NoiseSamples;
 
 float read_signed(uint place) {
     uvec2 words = uvec2(photon_counts[place], photon_counts[place + 1u]);

@@ -10,13 +10,13 @@ layout(local_size_x = 64) in;
 
 #include "common/living_paths.glsl"
 #include "common/photon.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
+readonly buffer Closures;
 #include "photons/parts.glsl"
-layout(std430, binding = 1) buffer Rays;
-layout(std430, binding = 2) buffer PhotonPaths;
-layout(std430, binding = 3) readonly buffer Photons;
-layout(std430, binding = 4) readonly buffer AdjointQueries;
-layout(std430, binding = 5) readonly buffer PhotonRange;
+buffer Rays;
+buffer PhotonPaths;
+readonly buffer Photons;
+readonly buffer AdjointQueries;
+readonly buffer PhotonRange;
 
 void main() {
     uint index = living_path();

@@ -9,10 +9,10 @@ layout(local_size_x = 64) in;
 #include <BalanceParameters>
 #include <Dispatch>
 #include "common/invocation.glsl"
-layout(std140, binding = 0) uniform Parameters { BalanceParameters parameters; };
-layout(std430, binding = 0) readonly buffer Emitted { PhotonPath emitted[]; };
-layout(std430, binding = 1) readonly buffer PhotonPaths;
-layout(std430, binding = 2) writeonly buffer Sums { FluxSums sums[]; };
+uniform Parameters { BalanceParameters parameters; };
+readonly buffer Emitted { PhotonPath emitted[]; };
+readonly buffer PhotonPaths;
+writeonly buffer Sums { FluxSums sums[]; };
 
 shared FluxSums shares[GROUP_SIZE];
 

@@ -6,8 +6,8 @@ layout(local_size_x = 64) in;
 
 #include <BeginSegmentParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { BeginSegmentParameters parameters; };
-layout(std430, binding = 0) buffer PhotonRange;
+uniform Parameters { BeginSegmentParameters parameters; };
+buffer PhotonRange;
 
 void main() {
     if (living_place() != 0u) return;

@@ -4,9 +4,9 @@
 // Needs the members footprint_photons and shrinkage of the parameters.
 
 #include <PhotonDifferential>
-layout(std430, binding = 5) readonly buffer Triangles;
-layout(std430, binding = 6) readonly buffer Attributes;
-layout(std430, binding = 7) buffer PhotonDifferentials;
+readonly buffer Triangles;
+readonly buffer Attributes;
+buffer PhotonDifferentials;
 
 // What of the light's own extent a footprint covers at least, as a part of its radius.
 const float BLUR_FRACTION = 0.5;

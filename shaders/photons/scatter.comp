@@ -11,17 +11,17 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { ScatterPhotonsParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures;
+uniform Parameters { ScatterPhotonsParameters parameters; };
+readonly buffer Closures;
 #include "photons/parts.glsl"
 #include "common/transparency.glsl"
-layout(std430, binding = 10) readonly buffer Materials;
+readonly buffer Materials;
 #include "materials/medium.glsl"
-layout(std430, binding = 1) buffer Rays;
-layout(std430, binding = 2) buffer PhotonPaths;
-layout(std430, binding = 3) writeonly buffer Photons;
-layout(std430, binding = 4) writeonly buffer AdjointQueries;
-layout(std430, binding = 11) readonly buffer PhotonRange;
+buffer Rays;
+buffer PhotonPaths;
+writeonly buffer Photons;
+writeonly buffer AdjointQueries;
+readonly buffer PhotonRange;
 #include "photons/differentials.glsl"
 
 // unseen: a flag of direct photons from lights that do not take part in such events.

@@ -8,10 +8,10 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/camera_path.glsl"
-layout(std140, binding = 0) uniform Parameters { PrimaryRaysParameters parameters; };
-layout(std430, binding = 0) readonly buffer Camera;
-layout(std430, binding = 2) writeonly buffer Rays;
-layout(std430, binding = 4) writeonly buffer CameraPaths;
+uniform Parameters { PrimaryRaysParameters parameters; };
+readonly buffer Camera;
+writeonly buffer Rays;
+writeonly buffer CameraPaths;
 #include "gbuffer/aperture.glsl"
 #include "gbuffer/panorama.glsl"
 

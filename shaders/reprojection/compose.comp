@@ -12,19 +12,19 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/luminance.glsl"
 #include "gbuffer/projections.glsl"
-layout(std140, binding = 0) uniform Parameters { ReprojectionParameters parameters; };
-layout(std430, binding = 0) readonly buffer Camera;
-layout(std430, binding = 1) readonly buffer LastCamera { CameraView last_camera; };
-layout(std430, binding = 2) readonly buffer LastPicture { vec4 last_picture[]; };
-layout(std430, binding = 3) readonly buffer LastCounts { float last_counts[]; };
-layout(std430, binding = 4) readonly buffer NewPicture { vec4 new_picture[]; };
-layout(std430, binding = 5) writeonly buffer Picture { vec4 picture[]; };
-layout(std430, binding = 6) writeonly buffer Counts { float counts[]; };
-layout(binding = 0) uniform sampler2D surfaces;
-layout(binding = 1) uniform sampler2D numbers;
-layout(binding = 2) uniform sampler2D looks;
-layout(binding = 3) uniform sampler2D last_surfaces;
-layout(binding = 4) uniform sampler2D last_numbers;
+uniform Parameters { ReprojectionParameters parameters; };
+readonly buffer Camera;
+readonly buffer LastCamera { CameraView last_camera; };
+readonly buffer LastPicture { vec4 last_picture[]; };
+readonly buffer LastCounts { float last_counts[]; };
+readonly buffer NewPicture { vec4 new_picture[]; };
+writeonly buffer Picture { vec4 picture[]; };
+writeonly buffer Counts { float counts[]; };
+uniform sampler2D surfaces;
+uniform sampler2D numbers;
+uniform sampler2D looks;
+uniform sampler2D last_surfaces;
+uniform sampler2D last_numbers;
 
 const float SAME_NORMAL = 0.8, SAME_DEPTH = 0.02, NEAR_DEPTH = 0.1;
 const float LEAST_WEIGHT = 0.05;

@@ -5,7 +5,7 @@
 layout(local_size_x = 1) in;
 
 #include <CountParameters>
-layout(std140, binding = 0) uniform Parameters { CountParameters parameters; };
+uniform Parameters { CountParameters parameters; };
 #include "resolve/ranges.glsl"
 
 #include <Dispatch>

@@ -3,7 +3,7 @@
 
 #define MATERIAL_AOVS
 // Of each path of a band the channels of all AOVs.
-layout(std430, binding = 14) buffer AovValues;
+buffer AovValues;
 
 void add_aov(uint at, float value) {
 #ifdef NODE_RAYS

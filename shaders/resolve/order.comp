@@ -6,10 +6,10 @@ layout(local_size_x = 64) in;
 
 #include "common/constants.glsl"
 #include "common/living_paths.glsl"
-layout(std430, binding = 0) readonly buffer Rays;
-layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 4) readonly buffer Attributes;
-layout(std430, binding = 5) readonly buffer Materials;
+readonly buffer Rays;
+readonly buffer Hits;
+readonly buffer Attributes;
+readonly buffer Materials;
 #include "resolve/ranges.glsl"
 
 void main() {

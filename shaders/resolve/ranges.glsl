@@ -3,7 +3,7 @@
 // A range: first place, length, places taken, a pad, and the groups of its dispatch. Where there is one program, a list
 // of paths, which begins like a range, stands for all this.
 
-layout(std430, binding = 12) buffer HitOrder;
+buffer HitOrder;
 
 #include <Ranges>
 

@@ -8,9 +8,9 @@ layout(local_size_x = 64) in;
 #include <ResolveParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
-layout(std140, binding = 0) uniform Parameters { ResolveParameters parameters; };
+uniform Parameters { ResolveParameters parameters; };
 #include "materials/usable.glsl"
-layout(std430, binding = 2) writeonly buffer Closures;
+writeonly buffer Closures;
 // Drivers on the processor have registers in memory anyway.
 #ifndef READS_TEXELS
 #define LOBES_IN_MEMORY closures
@@ -24,10 +24,10 @@ uint resolved_path;
 #include "common/light_sets.glsl"
 #include "resolve/ranges.glsl"
 
-layout(std430, binding = 0) readonly buffer Rays;
-layout(std430, binding = 1) readonly buffer Hits;
-layout(std430, binding = 5) readonly buffer Materials;
-layout(std430, binding = 13) readonly buffer PathFlags { uint path_words[]; };
+readonly buffer Rays;
+readonly buffer Hits;
+readonly buffer Materials;
+readonly buffer PathFlags { uint path_words[]; };
 
 #include "materials/generated.glsl"
 

@@ -5,10 +5,10 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/intersection.glsl"
 #include <BruteForceParameters>
-layout(std140, binding = 0) uniform Parameters { BruteForceParameters parameters; };
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) writeonly buffer Hits;
-layout(std430, binding = 3) readonly buffer Triangles;
+uniform Parameters { BruteForceParameters parameters; };
+readonly buffer Rays;
+writeonly buffer Hits;
+readonly buffer Triangles;
 
 void main() {
     uint index = parameters.first_ray + invocation_index();

@@ -11,14 +11,14 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/light_sets.glsl"
 #include <LightLink>
-layout(std140, binding = 0) uniform Parameters { ShadowCatcherParameters parameters; };
+uniform Parameters { ShadowCatcherParameters parameters; };
 #include "lights/lights.glsl"
-layout(std430, binding = 0) readonly buffer Closures;
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 3) writeonly buffer ShadowRays;
-layout(std430, binding = 2) writeonly buffer Contributions;
-layout(std430, binding = 8) readonly buffer LightLinks;
-layout(std430, binding = 15) writeonly buffer LightTriangles;
+readonly buffer Closures;
+readonly buffer Rays;
+writeonly buffer ShadowRays;
+writeonly buffer Contributions;
+readonly buffer LightLinks;
+writeonly buffer LightTriangles;
 
 const int CANDIDATES = 64;
 

@@ -4,8 +4,8 @@
 // (integrator/density_estimation/splat_sums.py).
 
 #include "splat_sums/signs.glsl"
-layout(std430, binding = 4) buffer SplatSums;
-layout(std430, binding = 5) buffer PhotonCounts;
+buffer SplatSums;
+buffer PhotonCounts;
 
 void add_quanta(uint place, float quanta) {
     uvec2 added = whole_quanta(quanta);

@@ -3,8 +3,8 @@
 // The includer declares the members of SUM_PARAMETERS (integrator/density_estimation/splat_sums.py).
 
 #include "splat_sums/signs.glsl"
-layout(std430, binding = 4) buffer SplatSums;
-layout(std430, binding = 5) buffer PhotonCounts;
+buffer SplatSums;
+buffer PhotonCounts;
 
 struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; uint caustic; uvec2 with_signs; };
 

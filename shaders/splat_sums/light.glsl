@@ -4,9 +4,9 @@
 #include "common/path_history.glsl"
 #include "splat_sums/light_sums.glsl"
 #include "light_groups/group_sums.glsl"
-layout(std430, binding = 9) buffer LightSums;
-layout(std430, binding = 10) readonly buffer PhotonGroups;
-layout(std430, binding = 11) buffer GroupSums;
+buffer LightSums;
+readonly buffer PhotonGroups;
+buffer GroupSums;
 
 void add_light_word(uint place, float quanta) {
     uvec2 added = whole_quanta(quanta);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "splat_sums/sums.glsl"
-layout(std430, binding = 1) readonly buffer SplatSums;
+readonly buffer SplatSums;
 
 // The sum of a pixel in quanta.
 vec3 read_sum(uint pixel, bool by_ray) {

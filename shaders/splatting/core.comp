@@ -7,11 +7,11 @@ layout(local_size_x = 64) in;
 #include <CubeParameters>
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) buffer Photons;
-layout(std430, binding = 1) readonly buffer StoredPhotons;
-layout(std430, binding = 2) readonly buffer Core;
-layout(std430, binding = 3) readonly buffer Importons;
+uniform Parameters { CubeParameters parameters; };
+buffer Photons;
+readonly buffer StoredPhotons;
+readonly buffer Core;
+readonly buffer Importons;
 #include "common/importon.glsl"
 #include "splatting/meet.glsl"
 

@@ -4,9 +4,9 @@
 
 #include <QuadParameters>
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 0) buffer Photons;
-layout(std430, binding = 1) readonly buffer Importons;
+uniform Parameters { QuadParameters parameters; };
+buffer Photons;
+readonly buffer Importons;
 #include "common/importon.glsl"
 #include "splatting/meet.glsl"
 

@@ -10,11 +10,11 @@ layout(local_size_x = 64) in;
 #include "gbuffer/projections.glsl"
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
-layout(std140, binding = 0) uniform Parameters { SplatParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons;
-layout(std430, binding = 1) readonly buffer StoredPhotons;
-layout(std430, binding = 2) readonly buffer Camera;
-layout(std430, binding = 3) buffer Jobs;
+uniform Parameters { SplatParameters parameters; };
+readonly buffer Photons;
+readonly buffer StoredPhotons;
+readonly buffer Camera;
+buffer Jobs;
 
 void main() {
     uint index = invocation_index();

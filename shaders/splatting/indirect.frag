@@ -4,10 +4,10 @@
 
 #include <QuadParameters>
 #include "common/photon.glsl"
-layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 0) buffer Photons;
-layout(std430, binding = 1) readonly buffer Importons;
-layout(std430, binding = 2) readonly buffer Heads;
+uniform Parameters { QuadParameters parameters; };
+buffer Photons;
+readonly buffer Importons;
+readonly buffer Heads;
 #include "common/importon.glsl"
 #include "splatting/meet.glsl"
 

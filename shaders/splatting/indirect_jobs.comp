@@ -14,11 +14,11 @@ layout(local_size_x = 64) in;
 #include "splatting/cube.glsl"
 #include "splatting/sphere_bounds.glsl"
 #include "splatting/jobs.glsl"
-layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons;
-layout(std430, binding = 1) readonly buffer StoredPhotons;
-layout(std430, binding = 2) readonly buffer Heads;
-layout(std430, binding = 3) buffer Jobs;
+uniform Parameters { CubeParameters parameters; };
+readonly buffer Photons;
+readonly buffer StoredPhotons;
+readonly buffer Heads;
+buffer Jobs;
 
 // Most photons have no importon near them: a footprint shrinks to the cells, or the blocks of cells,
 // that hold some. False: it holds none.

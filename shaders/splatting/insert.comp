@@ -8,10 +8,10 @@ layout(local_size_x = 64) in;
 #include <CubeParameters>
 #include "common/living_paths.glsl"
 #include "splatting/cube.glsl"
-layout(std140, binding = 0) uniform Parameters { CubeParameters parameters; };
-layout(std430, binding = 0) buffer Importons;
-layout(std430, binding = 1) buffer Heads;
-layout(std430, binding = 2) buffer Core;
+uniform Parameters { CubeParameters parameters; };
+buffer Importons;
+buffer Heads;
+buffer Core;
 
 void main() {
     uint index = living_path();

@@ -4,8 +4,8 @@
 
 #include <QuadParameters>
 #include "splatting/jobs.glsl"
-layout(std140, binding = 0) uniform Parameters { QuadParameters parameters; };
-layout(std430, binding = 3) readonly buffer Jobs;
+uniform Parameters { QuadParameters parameters; };
+readonly buffer Jobs;
 
 flat out uint photon_number;
 flat out uint face;

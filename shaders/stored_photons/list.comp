@@ -9,11 +9,11 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 #include <DirectPhotons>
-layout(std140, binding = 0) uniform Parameters { StoredParameters parameters; };
-layout(std430, binding = 0) readonly buffer Photons;
-layout(std430, binding = 1) buffer StoredPhotons;
-layout(std430, binding = 2) readonly buffer PhotonOrigins;
-layout(std430, binding = 3) readonly buffer PhotonRange;
+uniform Parameters { StoredParameters parameters; };
+readonly buffer Photons;
+buffer StoredPhotons;
+readonly buffer PhotonOrigins;
+readonly buffer PhotonRange;
 
 void main() {
     uint index = invocation_index();

@@ -8,11 +8,11 @@ layout(local_size_x = 64) in;
 #include <EnterParameters>
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
-layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures;
+uniform Parameters { EnterParameters parameters; };
+readonly buffer Closures;
 #include "common/bsdf/stored_lobes.glsl"
-layout(std430, binding = 1) readonly buffer Rays;
-layout(std430, binding = 2) writeonly buffer ExitClosures;
+readonly buffer Rays;
+writeonly buffer ExitClosures;
 #include "subsurface/entry.glsl"
 #include "subsurface/surface.glsl"
 

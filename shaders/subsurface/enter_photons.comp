@@ -6,11 +6,11 @@ layout(local_size_x = 64) in;
 
 #include <EnterParameters>
 #include "common/living_paths.glsl"
-layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
-layout(std430, binding = 0) readonly buffer Closures;
+uniform Parameters { EnterParameters parameters; };
+readonly buffer Closures;
 #include "photons/parts.glsl"
-layout(std430, binding = 1) buffer PhotonPaths;
-layout(std430, binding = 2) readonly buffer AdjointQueries;
+buffer PhotonPaths;
+readonly buffer AdjointQueries;
 #include "subsurface/entry.glsl"
 
 void main() {

@@ -4,8 +4,8 @@
 #include <SubsurfaceWalk>
 #include "common/random.glsl"
 #include "common/bsdf/subsurface.glsl"
-layout(std430, binding = 4) writeonly buffer SubsurfaceWalks;
-layout(std430, binding = 5) writeonly buffer WalkRays;
+writeonly buffer SubsurfaceWalks;
+writeonly buffer WalkRays;
 
 // The albedos of single scattering by which a half space reflects so much, and the extinctions, 1/m. g: anisotropy.
 // D'Eon, A Hitchhiker's Guide to Multiple Scattering (v0.3.2), eq. 53.7, with van de Hulst's similarity.

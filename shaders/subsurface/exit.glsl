@@ -3,12 +3,12 @@
 
 #include <Hit>
 #include <SubsurfaceWalk>
-layout(std430, binding = 1) readonly buffer Triangles;
-layout(std430, binding = 2) readonly buffer Attributes;
+readonly buffer Triangles;
+readonly buffer Attributes;
 #include "common/triangle_normal.glsl"
-layout(std430, binding = 3) readonly buffer ExitHits;
-layout(std430, binding = 4) readonly buffer SubsurfaceWalks;
-layout(std430, binding = 5) readonly buffer WalkRays;
+readonly buffer ExitHits;
+readonly buffer SubsurfaceWalks;
+readonly buffer WalkRays;
 
 struct Exit { vec3 position; vec3 geometric; vec3 shading; float ray_offset; };
 

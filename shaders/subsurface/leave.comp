@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
-layout(std430, binding = 0) writeonly buffer ExitClosures;
+writeonly buffer ExitClosures;
 #include "subsurface/exit.glsl"
 
 void main() {

@@ -9,14 +9,14 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/sampling.glsl"
-layout(std140, binding = 0) uniform Parameters { EnterParameters parameters; };
+uniform Parameters { EnterParameters parameters; };
 #include "subsurface/exit.glsl"
 #include "subsurface/surface.glsl"
-layout(std430, binding = 6) buffer PhotonPaths;
-layout(std430, binding = 7) writeonly buffer Rays;
-layout(std430, binding = 8) writeonly buffer Hits;
+buffer PhotonPaths;
+writeonly buffer Rays;
+writeonly buffer Hits;
 // Where they have gone in.
-layout(std430, binding = 10) readonly buffer Closures;
+readonly buffer Closures;
 
 void main() {
     uint index = living_path();

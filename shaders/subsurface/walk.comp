@@ -16,14 +16,14 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "common/sampling.glsl"
 #include "common/random.glsl"
-layout(std140, binding = 0) uniform Parameters { WalkParameters parameters; };
-layout(std430, binding = 1) readonly buffer Attributes;
+uniform Parameters { WalkParameters parameters; };
+readonly buffer Attributes;
 #define TRACES_INSTANCES
 #include TRAVERSAL
 
-layout(std430, binding = 2) writeonly buffer ExitHits;
-layout(std430, binding = 4) buffer SubsurfaceWalks;
-layout(std430, binding = 5) buffer WalkRays;
+writeonly buffer ExitHits;
+buffer SubsurfaceWalks;
+buffer WalkRays;
 
 // From this step on scattering is even, by similarity.
 const uint EVEN_STEPS = 10u;

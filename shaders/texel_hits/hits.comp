@@ -10,14 +10,14 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/camera_path.glsl"
-layout(std140, binding = 0) uniform Parameters { TexelParameters parameters; };
-layout(std430, binding = 0) readonly buffer BakedTexels { Texel baked_texels[]; };
-layout(std430, binding = 1) readonly buffer Triangles;
-layout(std430, binding = 2) readonly buffer Attributes;
+uniform Parameters { TexelParameters parameters; };
+readonly buffer BakedTexels { Texel baked_texels[]; };
+readonly buffer Triangles;
+readonly buffer Attributes;
 #include "common/triangle_normal.glsl"
-layout(std430, binding = 3) writeonly buffer Rays;
-layout(std430, binding = 4) writeonly buffer Hits;
-layout(std430, binding = 5) writeonly buffer CameraPaths;
+writeonly buffer Rays;
+writeonly buffer Hits;
+writeonly buffer CameraPaths;
 
 // The least cosine to the shading normal by which surfaces are seen from a camera: those that turn away from it would
 // be black. Cycles' own.

@@ -14,8 +14,8 @@ from rppm_addon.gl.programs import ProgramLibrary
 SHADER = """#version 430 core
 layout(local_size_x = 64) in;
 struct Item { vec3 place; uint next; };
-layout(std430, binding = 0) readonly buffer Items { Item items[]; };
-layout(std430, binding = 1) buffer Results { uint total; uint results[]; };
+readonly buffer Items { Item items[]; };
+buffer Results { uint total; uint results[]; };
 void main() {
     uint index = gl_GlobalInvocationID.x;  // results[index]
     if (index >= 100u) return;
@@ -45,7 +45,7 @@ def test_arrays_within_items_count():
     text = """#version 430 core
 struct Part { vec3 color; uint kind; };
 struct Whole { vec2 place; Part parts[3]; };
-layout(std430, binding = 0) buffer Wholes { Whole wholes[]; };
+buffer Wholes { Whole wholes[]; };
 void main() {
     int k = int(wholes[2].place.x);
     Whole whole = wholes[0];

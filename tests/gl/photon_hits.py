@@ -30,7 +30,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     left = LivingPaths(mapper.context, library, "left", "")
     geometry = context.geometry
     gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry)
-    gbuffer.find(lights.buffers["Lights"], context.geometry, rays, hits.buffer, count, left)
+    gbuffer.find(lights.table_buffer, context.geometry, rays, hits.buffer, count, left)
     settled = 1.0 - left.read_count() / count
     context.acceleration.trace(rays, hits.buffer, left)
     rasterized = hits.read(HIT.dtype, count).copy()

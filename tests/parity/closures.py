@@ -33,10 +33,10 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "materials/subsurface.glsl"
 #include "materials/nodes/shaders.glsl"
-layout(std140, binding = 0) uniform Parameters { ClosureTestParameters parameters; };
-layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
-layout(std430, binding = 2) readonly buffer Inputs { float inputs[]; };
+uniform Parameters { ClosureTestParameters parameters; };
+readonly buffer Points { vec4 points[]; };
+writeonly buffer Results { vec4 results[]; };
+readonly buffer Inputs { float inputs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;

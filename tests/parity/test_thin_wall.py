@@ -31,10 +31,10 @@ layout(local_size_x = 64) in;
 #include <SheetTestParameters>
 #include "common/invocation.glsl"
 #include "materials/nodes/shaders.glsl"
-layout(std140, binding = 0) uniform Parameters { SheetTestParameters parameters; };
-layout(std430, binding = 0) readonly buffer Cosines { float cosines[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
-layout(std430, binding = 2) readonly buffer Inputs { float inputs[]; };
+uniform Parameters { SheetTestParameters parameters; };
+readonly buffer Cosines { float cosines[]; };
+writeonly buffer Results { vec4 results[]; };
+readonly buffer Inputs { float inputs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;

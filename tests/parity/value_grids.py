@@ -275,8 +275,8 @@ def program_text(case: Case, surface: str = "") -> str:
     newline = "\n"
     return f"""#version 430 core
 layout(local_size_x = {_GROUP}) in;
-layout(std430, binding = 1) readonly buffer Inputs {{ float inputs[]; }};
-layout(std430, binding = 2) writeonly buffer Results {{ float results[]; }};
+readonly buffer Inputs {{ float inputs[]; }};
+writeonly buffer Results {{ float results[]; }};
 {newline.join(includes)}
 void main() {{
     uint i = gl_GlobalInvocationID.x;
@@ -310,15 +310,15 @@ def our_values(context: Context, case: Case, surface: str = "") -> dict[str, np.
     table = np.zeros(1, np.float32) if case.exported is None else case.exported.table
     table = np.zeros(1, np.float32) if table is None else table
     buffers = {
-        1: gl.buffer(np.ascontiguousarray(inputs, np.float32).tobytes()),
-        2: gl.buffer(reserve=4 * case.count * sum(widths)),
-        6: gl.buffer(np.ascontiguousarray(table, np.float32).tobytes()),
+        "Inputs": gl.buffer(np.ascontiguousarray(inputs, np.float32).tobytes()),
+        "Results": gl.buffer(reserve=4 * case.count * sum(widths)),
+        "MaterialData": gl.buffer(np.ascontiguousarray(table, np.float32).tobytes()),
     }
-    for binding, buffer in buffers.items():
-        buffer.bind_to_storage_buffer(binding)
+    for block, binding in source.blocks.items():
+        buffers[block].bind_to_storage_buffer(binding)
     program.run(-(-case.count // _GROUP))
     context.barrier()
-    results = np.frombuffer(buffers[2].read(), np.float32).reshape(case.count, -1)
+    results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(case.count, -1)
     for buffer in buffers.values():
         buffer.release()
     program.release()

@@ -37,10 +37,19 @@ class Variant:
     kinds: str = ""
     """Which kinds of nodes the graph has: the name of their file."""
 
-    def expand(self, reads_texels: bool = False, large: Collection[str] = (), whole: bool = False) -> Source:
-        """Its text, with functions that nothing calls if it is to be whole; raises ShaderError."""
+    def expand(
+        self,
+        reads_texels: bool = False,
+        large: Collection[str] = (),
+        whole: bool = False,
+        beside: Source | None = None,
+    ) -> Source:
+        """Its text, with functions that nothing calls if it is to be whole; beside: the other stage of its program.
+
+        Raises ShaderError.
+        """
         inserts = {GENERATED: self.generated} if self.generated else {}
-        return expand(self.name, self.defines, inserts, reads_texels, large, whole)
+        return expand(self.name, self.defines, inserts, reads_texels, large, whole, beside)
 
 
 def _graphs_of(text: str) -> dict[str, str]:

@@ -9,7 +9,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Count, Declared
 from ...gl.buffers import SMALLEST, GrowingBuffer, refuse_large_block
 from ...gl.context import Context
-from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary
+from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary, Resource
 from ...gl.records import Record
 from .records import LIVING_PATHS_HEADER
 
@@ -99,7 +99,7 @@ class LivingPaths(BufferSet):
         paths.write(header)
 
     def run(
-        self, program: ComputeProgram, buffers: Mapping[str, moderngl.Buffer], parameters: Mapping | None = None
+        self, program: ComputeProgram, buffers: Mapping[str, Resource], parameters: Mapping | None = None
     ) -> None:
         """Run a program for the paths of the list."""
         program.run_indirect(self.buffer, _GROUPS, {**buffers, "LivingPaths": self.buffer}, parameters)

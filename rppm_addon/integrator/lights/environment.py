@@ -47,7 +47,7 @@ def _directions_by(brightness: np.ndarray) -> np.ndarray:
     return np.concatenate([cumulated, cells.ravel()]).astype(np.float32)
 
 
-_MAP = TextureKind((0, 1), "f4", repeats=(True, False))
+_MAP = TextureKind(["environment_image", "environment_seen"], "f4", repeats=(True, False))
 
 
 class Environment(BufferSet):
@@ -121,10 +121,10 @@ class Environment(BufferSet):
         height, width = pixels.shape[:2]
         return self.own(_MAP.make(self._context.moderngl, (width, height), rgba.tobytes()), "environment")
 
-    def use(self) -> None:
-        """Bind the maps to texture units 0 and 1, where environment.glsl reads them."""
-        self._textures[0].use(0)
-        self._textures[-1].use(1)
+    @property
+    def textures(self) -> dict[str, moderngl.Texture]:
+        """The maps by the names of their samplers in lights/environment.glsl: as light, and as the camera sees it."""
+        return {"environment_image": self._textures[0], "environment_seen": self._textures[-1]}
 
 
 def _map_width(graph: NodeGraph, images: list[Image]) -> int:

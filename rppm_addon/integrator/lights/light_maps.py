@@ -46,7 +46,7 @@ class LightNodes:
     """Among the maps: left, bottom, width, height from 0 to 1."""
 
 
-_TEXTURE = TextureKind((2,), "f2", repeats=(True, True))
+_TEXTURE = TextureKind(["light_maps"], "f2", repeats=(True, True))
 
 
 class LightMaps(BufferSet):
@@ -87,9 +87,10 @@ class LightMaps(BufferSet):
         texture = _TEXTURE.make(self._context.moderngl, (width, height), texels.tobytes())
         self._texture = self.own(texture, "light maps")
 
-    def use(self) -> None:
-        """Bind the maps to texture unit 2, where light_maps.glsl reads them."""
-        known(self._texture).use(2)
+    @property
+    def texture(self) -> moderngl.Texture:
+        """The maps of all lights, which light_maps.glsl reads."""
+        return known(self._texture)
 
 
 def is_sphere(light: Light) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import ProgramLibrary, Resource
 from ...materials.tables import MaterialTables
 from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
@@ -155,18 +155,25 @@ class Lights(BufferSet):
         return known(self._portals)
 
     @property
-    def buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of lights/lights.glsl."""
+    def table_buffer(self) -> moderngl.Buffer:
+        """The storage block Lights: a LIGHT record for each light."""
+        return self._lights.buffer
+
+    @property
+    def buffers(self) -> dict[str, Resource]:
+        """Storage blocks and textures of lights/lights.glsl."""
         return {
-            "Lights": self._lights.buffer,
+            **self.environment.textures,
+            "light_maps": self.light_maps.texture,
+            "Lights": self.table_buffer,
             "EmissiveTriangles": self.emitters.triangles.buffer,
             "Triangles": known(self._triangles),
             "EnvironmentDistribution": self.environment.distribution.buffer,
         }
 
     @property
-    def tree_buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of lights/light_tree.glsl."""
+    def tree_buffers(self) -> dict[str, Resource]:
+        """Storage blocks and textures of lights/light_tree.glsl."""
         return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
 
     def linking_blocks(self, contributions: moderngl.Buffer) -> dict[str, moderngl.Buffer] | None:
@@ -188,11 +195,6 @@ class Lights(BufferSet):
         for name, value in zip(self._names, values):
             sums[name] = sums.get(name, 0) + value
         return sums
-
-    def use_maps(self) -> None:
-        """Bind the textures of programs that include lights/lights.glsl."""
-        self.environment.use()
-        self.light_maps.use()
 
     def parameters(self, iteration: Iteration) -> dict[str, object]:
         """Values of LIGHT_PARAMETERS."""

@@ -192,7 +192,6 @@ class DirectLight(BufferSet):
         ray: int,
     ) -> None:
         """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
-        context.lights.use_maps()
         importons.living.run(
             self._sample,
             {

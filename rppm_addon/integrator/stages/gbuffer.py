@@ -94,10 +94,10 @@ class GBuffer(CameraHits):
                 viewport=(0, 0, band.columns, band.rows),
                 state=moderngl.DEPTH_TEST,
             )
-            self._visibility.use(0)
             self._hits.run(
                 band.pixel_count,
                 {
+                    "visibility": self._visibility,
                     "Camera": self.camera.buffer,
                     "Triangles": geometry.triangles.buffer,
                     "Rays": importons.rays.buffer,

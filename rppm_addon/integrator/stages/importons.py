@@ -124,7 +124,6 @@ class Importons(BufferSet):
         """
         settings, lights = context.settings, context.lights
         with context.timers.stage("camera scattering"):
-            lights.use_maps()
             self.living.run(
                 self._scatter,
                 {

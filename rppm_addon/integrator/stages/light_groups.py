@@ -96,7 +96,6 @@ class LightGroups(BufferSet):
                     },
                     self._parameters(context),
                 )
-            lights.use_maps()
             importons.living.run(
                 self._programs["passed"],
                 {

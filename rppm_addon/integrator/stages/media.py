@@ -50,7 +50,7 @@ class Media(BufferSet):
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
         if self._is_used(context, iteration):
-            lights = {"Lights": context.lights.buffers["Lights"]}
+            lights = {"Lights": context.lights.table_buffer}
             self._enter(context, photons.living, photons.path_blocks | lights, "media/enter_photons.comp")
 
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
@@ -78,7 +78,7 @@ class Media(BufferSet):
         lights = len(context.lights.table)
         self._of_sources.require_items(lights + 1)
         program = self._library.compute("media/find.comp", context.acceleration.traversal_defines)
-        buffers = self._buffers(context) | {"Lights": context.lights.buffers["Lights"]}
+        buffers = self._buffers(context) | {"Lights": context.lights.table_buffer}
         program.run(lights + 1, {name: buffers[name] for name in program.blocks}, self._parameters(context))
 
     def _enter(

@@ -38,7 +38,6 @@ class PhotonEmission:
     ) -> None:
         """Emit ``count`` photons: their first rays, the flux they carry, what the world is like there, and how their
         neighbors leave."""
-        lights.use_maps()
         self._emit.run(
             count,
             {
@@ -84,7 +83,7 @@ class PhotonEmission:
             program,
             {
                 **acceleration.traversal_buffers,
-                "Lights": lights.buffers["Lights"],
+                "Lights": lights.table_buffer,
                 "Rays": rays,
                 "Hits": hits,
                 "PhotonPaths": photon_paths,

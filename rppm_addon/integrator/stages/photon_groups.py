@@ -31,7 +31,7 @@ class PhotonGroups(BufferSet):
         self._find.run(
             photons,
             {
-                "Lights": lights.buffers["Lights"],
+                "Lights": lights.table_buffer,
                 "Rays": rays,
                 "PhotonGroups": self.groups.buffer,
                 "LightGroupTable": lights.group_table.buffer,

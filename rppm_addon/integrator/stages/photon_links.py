@@ -34,7 +34,7 @@ class PhotonLinks(BufferSet):
         self._find.run(
             photons,
             {
-                "Lights": lights.buffers["Lights"],
+                "Lights": lights.table_buffer,
                 "Rays": rays,
                 "PhotonLinks": self._links.buffer,
                 "Triangles": context.geometry.triangles.buffer,

@@ -41,7 +41,6 @@ class ShadowCatcher(BufferSet):
         if self._program is None:
             return
         with context.timers.stage("shadow catcher"):
-            context.lights.use_maps()
             importons.living.run(
                 self._program,
                 {

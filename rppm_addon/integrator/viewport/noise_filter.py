@@ -124,12 +124,10 @@ class NoiseFilter(BufferSet):
         guide.write(self._guides.buffer)
         for step in STEPS:
             signal.write(self.picture.buffer)
-            signal.use(0)
-            guide.use(1)
-            self._smooth.run(pixels, signals, parameters | {"step": step})
+            images = {"signal_image": signal, "guide_image": guide}
+            self._smooth.run(pixels, signals | images, parameters | {"step": step})
         signal.write(self.picture.buffer)
-        signal.use(0)
-        self._despeckle.run(pixels, buffers | signals, parameters)
+        self._despeckle.run(pixels, buffers | signals | {"signal_image": signal}, parameters)
 
     def read(self) -> np.ndarray:
         """(height, width, 4) float32 radiance W/(m^2 sr) and alpha, row 0 at the bottom."""

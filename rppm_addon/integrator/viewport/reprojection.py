@@ -198,12 +198,14 @@ class Reprojection:
     ) -> None:
         history = 0.0 if last is None else MOST_HISTORY * fade
         last = last or seen  # something has to be bound
-        textures = (seen.surfaces, seen.numbers, seen.looks, last.surfaces, last.numbers)
-        for unit, texture in enumerate(textures):
-            texture.use(unit)
         self._compose.run(
             seen.size[0] * seen.size[1],
             {
+                "surfaces": seen.surfaces,
+                "numbers": seen.numbers,
+                "looks": seen.looks,
+                "last_surfaces": last.surfaces,
+                "last_numbers": last.numbers,
                 "Camera": seen.camera.buffer,
                 "LastCamera": last.camera.buffer,
                 "LastPicture": last.picture.buffer,

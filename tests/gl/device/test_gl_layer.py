@@ -115,8 +115,8 @@ SCALE = Record("ScaleParameters", factor="float", offset="vec3", turn="mat4")
 PROGRAM = """#version 430 core
 layout(local_size_x = 4) in;
 #include <ScaleParameters>
-layout(std140, binding = 0) uniform Parameters { ScaleParameters parameters; };
-layout(std430, binding = 1) buffer Values { vec4 values[]; };
+uniform Parameters { ScaleParameters parameters; };
+buffer Values { vec4 values[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     values[i] = vec4(parameters.offset, 0.0) + parameters.factor * (parameters.turn * values[i]);

@@ -9,8 +9,8 @@ from rppm_addon.gl.programs import ProgramLibrary
 PROGRAM = """#version 430 core
 layout(local_size_x = 64) in;
 #include "half.glsl"
-layout(std430, binding = 0) readonly buffer Words { uint words[]; };
-layout(std430, binding = 1) writeonly buffer Unpacked { vec2 unpacked[]; };
+readonly buffer Words { uint words[]; };
+writeonly buffer Unpacked { vec2 unpacked[]; };
 void main() { unpacked[gl_GlobalInvocationID.x] = two_halves(words[gl_GlobalInvocationID.x]); }
 """
 

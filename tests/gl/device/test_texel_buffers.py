@@ -20,10 +20,10 @@ WORDS = 26
 """That the shader writes of an item."""
 SHADER = """#version 430 core
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Things;
-layout(std430, binding = 1) readonly buffer Pairs { uvec2 pairs[]; };
-layout(std430, binding = 2) restrict readonly buffer Order { uint order[]; };
-layout(std430, binding = 3) writeonly buffer Found { uint found[]; };
+readonly buffer Things;
+readonly buffer Pairs { uvec2 pairs[]; };
+restrict readonly buffer Order { uint order[]; };
+writeonly buffer Found { uint found[]; };
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= COUNT) return;
@@ -146,10 +146,10 @@ def test_what_is_written_takes_no_more_than_texels_of_its_items(context, shader,
 
 COPY = """#version 430 core
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Things;
-layout(std430, binding = 1) readonly buffer Order { uint order[]; };
-layout(std430, binding = 2) restrict writeonly buffer Copies { Thing copies[]; };
-layout(std430, binding = 3) writeonly buffer Sizes { float sizes[]; };
+readonly buffer Things;
+readonly buffer Order { uint order[]; };
+restrict writeonly buffer Copies { Thing copies[]; };
+writeonly buffer Sizes { float sizes[]; };
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= COUNT) return;
@@ -189,8 +189,8 @@ def test_items_of_what_is_only_written_are_stored(context, shader, buffers, tmp_
 
 CHANGE = """#version 430 core
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) buffer Things;
-layout(std430, binding = 1) writeonly buffer Sizes { float sizes[]; };
+buffer Things;
+writeonly buffer Sizes { float sizes[]; };
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= COUNT) return;  // things[index] stands in a comment
@@ -237,9 +237,7 @@ def library_with(context, shader):
 
 
 def test_what_has_no_unit_stays_a_block(shader, tmp_path):
-    blocks = "".join(
-        f"layout(std430, binding = {k}) readonly buffer Block{k} {{ vec4 block{k}[]; }};\n" for k in range(20)
-    )
+    blocks = "".join(f"readonly buffer Block{k} {{ vec4 block{k}[]; }};\n" for k in range(20))
     (tmp_path / "own.comp").write_text(f"#version 430 core\n{blocks}")
     source = expand(shader, reads_texels=True)
     assert list(source.texel_buffers) == [f"Block{k}" for k in range(MOST_IMAGES)]
@@ -248,9 +246,9 @@ def test_what_has_no_unit_stays_a_block(shader, tmp_path):
 
 def test_what_is_written_stays_a_block(shader, tmp_path):
     (tmp_path / "own.comp").write_text(
-        "#version 430 core\nlayout(std430, binding = 0) buffer Things;\n"
-        "layout(std430, binding = 1) writeonly buffer Found { uint found[]; };\n"
-        "layout(std430, binding = 2) readonly buffer List { uint count; uint items[]; };\n"
+        "#version 430 core\nbuffer Things;\n"
+        "writeonly buffer Found { uint found[]; };\n"
+        "readonly buffer List { uint count; uint items[]; };\n"
     )
     assert not expand(shader, reads_texels=True).texel_buffers
 

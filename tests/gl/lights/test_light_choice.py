@@ -70,7 +70,6 @@ def run(mapper, library, **parameters) -> np.ndarray:
     """(CHOICES, 4) float32 of light_choices.comp."""
     results = mapper.context.moderngl.buffer(reserve=16 * CHOICES)
     emission = mapper.device_scene.lights
-    emission.use_maps()
     unset = {"point": np.zeros(3), "normal": np.zeros(3), "both_sides": 0, "looks_at_lights": 0, "reach": 0.0}
     library.compute(SHADER).run(
         CHOICES,

@@ -167,7 +167,6 @@ def mapper(context, library):
 def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float = 0.0) -> dict[str, np.ndarray]:
     """Samples of the scene's first light from a point: direction, distance, weight, pdf, seen, seen_pdf."""
     results = mapper.context.moderngl.buffer(reserve=48 * count)
-    mapper.device_scene.lights.environment.use()
     library.compute(str(FOLDER / "light_samples.comp")).run(
         count,
         {**mapper.device_scene.lights.buffers, "Results": results},

@@ -54,7 +54,6 @@ def portal_samples(mapper, library, point) -> tuple[np.ndarray, np.ndarray]:
     direction, pdf."""
     results = mapper.context.moderngl.buffer(reserve=48 * SAMPLES)
     lights = mapper.device_scene.lights
-    lights.environment.use()
     values = {**lights.parameters(Iteration(1, seed=3)), "count": SAMPLES, "point": point, "emitted": 0.0}
     blocks = {**lights.buffers, "Results": results}
     library.compute(str(FOLDER / "portal_samples.comp"), {"PORTALS": 1}).run(SAMPLES, blocks, values)
