@@ -5,10 +5,10 @@ A subclass of BufferSet declares them as members of its class::
 
     class Importons(BufferSet):
         remedy = "lower the resolution"
-        rays = StorageBuffer("camera rays", RAY, band_pixels)
+        rays = StorageBuffer("camera rays", RAY, band_pixels, block="Rays")
 
-and from that follow their allocation, what they take (``memory_bytes``), what they will take (``expected_bytes``), and
-their release. ``self.rays`` is a GrowingBuffer.
+and from that follow their allocation, what they take (``memory_bytes``), what they will take (``expected_bytes``), the
+storage blocks that they are bound as (``blocks``), and their release. ``self.rays`` is a GrowingBuffer.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -19,7 +19,7 @@ import moderngl
 from ..scene.errors import DeviceError
 from .buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
 from .context import Context
-from .programs import ProgramLibrary
+from .programs import Bindable, ProgramLibrary
 from .records import Record, stride
 
 Count = Callable[[Any], int]
@@ -72,7 +72,8 @@ class StorageBuffer(Declared[GrowingBuffer]):
     """A buffer of ``count`` items behind a header: ``item`` and ``header`` are records, or kinds such as "vec4".
 
     Without a count its length follows from the scene, and whoever fills it requires it; where the count is 0 there is
-    none. remedy: the set's if none is given. texel_bytes: that of GrowingBuffer.
+    none. remedy: the set's if none is given. texel_bytes: that of GrowingBuffer. block: name of the storage block that
+    shaders read or write it as.
     """
 
     def __init__(
@@ -83,7 +84,9 @@ class StorageBuffer(Declared[GrowingBuffer]):
         header: Record | str | None = None,
         remedy: str | None = None,
         texel_bytes: int | None = None,
+        block: str = "",
     ) -> None:
+        self.block = block
         self._name, self._remedy, self._count = name, remedy, count
         self._texel_bytes = texel_bytes
         self._item_size, self._header_size = stride(item), stride(header) if header else 0
@@ -147,19 +150,19 @@ class Part(Declared[Set]):
     """A set within a set, made for the same sizes."""
 
     def __init__(self, kind: type[Set]) -> None:
-        self._kind = kind
+        self.kind = kind
 
     def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Set:
         """Declared.make."""
-        return self._kind(context, library, sizes)
+        return self.kind(context, library, sizes)
 
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""
-        return self._kind.expected_bytes(sizes)
+        return self.kind.expected_bytes(sizes)
 
     def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
         """Declared.refuse_large."""
-        self._kind.refuse_large(context, sizes)
+        self.kind.refuse_large(context, sizes)
 
 
 class BufferSet:
@@ -185,9 +188,33 @@ class BufferSet:
         resource.release()
 
     @property
+    def blocks(self) -> dict[str, Bindable]:
+        """Buffers by the names of the storage blocks that they are bound as, those of its parts among them.
+
+        A block that several parts have is left out: who binds it names the part.
+        """
+        own: dict[str, Bindable] = {}
+        of_parts: dict[str, Bindable] = {}
+        ambiguous: set[str] = set()
+        for name, declared in _declarations(type(self)).items():
+            made = getattr(self, name)
+            if isinstance(declared, StorageBuffer) and declared.block:
+                own[declared.block] = made.buffer
+            elif isinstance(made, BufferSet):
+                found = made.blocks
+                ambiguous |= of_parts.keys() & found.keys()
+                of_parts |= found
+        return {block: buffer for block, buffer in of_parts.items() if block not in ambiguous} | own
+
+    @property
     def memory_bytes(self) -> dict[str, int]:
         """Bytes on the device by buffer; those without any are left out."""
         return sum_by_name(_bytes_of(resource, name) for resource, name in self._owned)
+
+    @classmethod
+    def part_kinds(cls) -> list[type["BufferSet"]]:
+        """The classes of its parts."""
+        return [declared.kind for declared in _declarations(cls).values() if isinstance(declared, Part)]
 
     @classmethod
     def expected_bytes(cls, sizes: object) -> dict[str, int]:

@@ -22,7 +22,7 @@ from .constants import Constants
 from .context import Context
 from .linking import Linker
 from .pacing import Pace, Pacing
-from .sources import ShaderError, Source, expand
+from .sources import Source, expand
 from .texel_buffers import IMAGES_FOR_LARGE, MOST_ADDED, TexelBuffers
 
 log = logging.getLogger(__name__)
@@ -40,7 +40,7 @@ FIRST_INVOCATION = "first_invocation"
 """The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
 Block = moderngl.Buffer | BufferRange
 """What is bound as a storage block."""
-Resource = Block | moderngl.Texture
+Bindable = Block | moderngl.Texture
 """What is bound by name: a storage block, or the texture of a sampler."""
 Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
@@ -100,9 +100,8 @@ class _Program:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
-        if buffers.keys() != self.blocks:
-            missing, unknown = sorted(self.blocks - buffers.keys()), sorted(buffers.keys() - self.blocks)
-            raise ValueError(f"{self.name}: buffers missing {missing}, unknown {unknown}")
+        if missing := self.blocks - buffers.keys():
+            raise ValueError(f"{self.name}: buffers missing {sorted(missing)}")
         for block, binding in self._bindings.items():
             buffers[block].bind_to_storage_buffer(binding)
         for sampler, unit in self._textures.items():
@@ -135,7 +134,7 @@ class ComputeProgram(_Program):
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)
 
-    def run(self, threads: int, buffers: Mapping[str, Resource], parameters: Mapping | None = None) -> None:
+    def run(self, threads: int, buffers: Mapping[str, Bindable], parameters: Mapping | None = None) -> None:
         """Run so many threads (rounded up to whole groups) and order their writes."""
         if threads <= 0:
             return
@@ -151,7 +150,7 @@ class ComputeProgram(_Program):
         self,
         arguments: moderngl.Buffer,
         offset: int,
-        buffers: Mapping[str, Resource],
+        buffers: Mapping[str, Bindable],
         parameters: Mapping | None = None,
     ) -> None:
         """Run as many groups as three uints at byte ``offset`` of ``arguments`` say."""
@@ -206,7 +205,7 @@ class DrawProgram(_Program):
         self,
         framebuffer: moderngl.Framebuffer,
         vertices: int | moderngl.Buffer,
-        buffers: Mapping[str, Resource],
+        buffers: Mapping[str, Bindable],
         parameters: Mapping | None = None,
         viewport: tuple[int, int, int, int] | None = None,
         state: int = moderngl.NOTHING,

@@ -96,72 +96,83 @@ def expand(
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include TRAVERSAL`` inserts the file that the define of that
-    name is; ``#include <Ray>`` inserts the struct of the
-    record, or the constants, of that name once; ``readonly buffer Rays;`` gets the members of the StorageBlock of that
-    name, and before it the structs of its records. Blocks, textures and images get numbers (bindings.py). Defines go
-    after #version; ``inserts`` are texts of files that are made at run time, by name. reads_texels: blocks that are only
-    read become texel buffers; large: those of these names in any case (read_as_texels). Sources with either have
-    READS_TEXELS defined. Functions that main does not lead to are left out, unless it is to be whole. beside: the other
-    stage of the program, whose numbers hold here as well. Raises ShaderError.
+    name is; ``#include <Ray>`` inserts the struct of the record, or the constants, of that name once; ``readonly buffer
+    Rays;`` gets the members of the StorageBlock of that name, and before it the structs of its records. Blocks,
+    textures and images get numbers (bindings.py). Defines go after #version; ``inserts`` are texts of files that are
+    made at run time, by name. reads_texels: blocks that are only read become texel buffers; large: those of these names
+    in any case (read_as_texels). Sources with either have READS_TEXELS defined. Functions that main does not lead to
+    are left out, unless it is to be whole. beside: the other stage of the program, whose numbers hold here as well.
+    Raises ShaderError.
     """
     defines = {**(defines or {}), **({"READS_TEXELS": 1} if reads_texels or large else {})}
-    files: list[str] = []
-    declared: dict[str, Record | Constants] = {**Record.registry, **Constants.registry}
-    seen: set[str] = set()
-    lines: list[str] = []
-
-    def declare(name: str) -> str:
-        if name in seen:
-            return ""
-        seen.add(name)
-        found = declared[name]
-        parts = [declare(part.name) for part in found.parts] if isinstance(found, Record) else []
-        return " ".join([*filter(None, parts), found.glsl()])
-
-    def read(name: str, includer: str) -> None:
-        if name in files:
-            return
-        try:
-            text = (inserts or {}).get(name) or (SHADER_FOLDER / name).read_text(encoding="utf-8")
-        except OSError as error:
-            raise ShaderError(f"{includer}: cannot include {name} ({error.strerror})") from error
-        number = len(files)
-        files.append(name)
-        if number:
-            lines.append(f"#line 1 {number}")
-        for line_number, line, match in _parts(text):
-            if match is None:
-                lines.append(line)
-            elif match.re is _VERSION:
-                lines.append(line)
-                lines.extend(f"#define {key} {value}" for key, value in defines.items())
-                lines.append(f"#line {line_number + 1} {number}")
-            elif match.re is _BLOCK:
-                block, rest = match.group(2), match.group(3)
-                structs = ""
-                if rest.startswith(";"):
-                    if block not in StorageBlock.registry:
-                        raise ShaderError(f"{name}:{line_number}: there is no storage block {block}")
-                    shared = StorageBlock.registry[block]
-                    structs = "".join(f"{declare(record.name)} " for record in shared.records)
-                    rest = f"{{ {shared.members} }}{rest}"
-                lines.append(f"{structs}{BLOCK_LAYOUT} {match.group(1)} {rest}")
-            elif not match.group(2):
-                read(_included_file(match, defines, f"{name}:{line_number}"), f"{name}:{line_number}")
-                lines.append(f"#line {line_number + 1} {number}")
-            else:
-                wanted = match.group(2)
-                if wanted not in declared:
-                    raise ShaderError(f"{name}:{line_number}: there is no record and there are no constants {wanted}")
-                lines.append(declare(wanted))
-
-    read(path, path)
-    text = number_images(put_together(lines, whole) + "\n")
+    expansion = _Expansion(defines, inserts or {})
+    expansion.read(path, path)
+    text = number_images(put_together(expansion.lines, whole) + "\n")
     texel_buffers = declared_texel_buffers(text) if DEFINE in defines else {}
     if reads_texels or large:
         text, texel_buffers = read_as_texels(text, texel_buffers, large, reads_texels)
     numbers = (beside.blocks, beside.textures) if beside else ({}, {})
-    return Source(number_bindings(text, *numbers), files, texel_buffers)
+    return Source(number_bindings(text, *numbers), expansion.files, texel_buffers)
+
+
+class _Expansion:
+    """The lines of a shader, and the files that they are from."""
+
+    def __init__(self, defines: Mapping[str, object], inserts: Mapping[str, str]) -> None:
+        self.files: list[str] = []
+        self.lines: list[str] = []
+        self._defines, self._inserts = defines, inserts
+        self._declared: dict[str, Record | Constants] = {**Record.registry, **Constants.registry}
+        self._seen: set[str] = set()
+
+    def read(self, name: str, includer: str) -> None:
+        """Add a file, unless it is there. Raises ShaderError."""
+        if name in self.files:
+            return
+        try:
+            text = self._inserts.get(name) or (SHADER_FOLDER / name).read_text(encoding="utf-8")
+        except OSError as error:
+            raise ShaderError(f"{includer}: cannot include {name} ({error.strerror})") from error
+        number = len(self.files)
+        self.files.append(name)
+        if number:
+            self.lines.append(f"#line 1 {number}")
+        for line_number, line, match in _parts(text):
+            place = f"{name}:{line_number}"
+            if match is None:
+                self.lines.append(line)
+            elif match.re is _VERSION:
+                self.lines.append(line)
+                self.lines.extend(f"#define {key} {value}" for key, value in self._defines.items())
+                self.lines.append(f"#line {line_number + 1} {number}")
+            elif match.re is _BLOCK:
+                self.lines.append(self._block(match[1], match[2], match[3], place))
+            elif not match[2]:
+                self.read(_included_file(match, self._defines, place), place)
+                self.lines.append(f"#line {line_number + 1} {number}")
+            elif match[2] in self._declared:
+                self.lines.append(self._declare(match[2]))
+            else:
+                raise ShaderError(f"{place}: there is no record and there are no constants {match[2]}")
+
+    def _declare(self, name: str) -> str:
+        """GLSL of a record, after those that it consists of, or of constants; empty where it is there."""
+        if name in self._seen:
+            return ""
+        self._seen.add(name)
+        found = self._declared[name]
+        parts = [self._declare(part.name) for part in found.parts] if isinstance(found, Record) else []
+        return " ".join([*filter(None, parts), found.glsl()])
+
+    def _block(self, declaration: str, name: str, rest: str, place: str) -> str:
+        """GLSL of a storage block with its layout, and with its members where ``rest`` begins with no brace."""
+        if not rest.startswith(";"):
+            return f"{BLOCK_LAYOUT} {declaration} {rest}"
+        if name not in StorageBlock.registry:
+            raise ShaderError(f"{place}: there is no storage block {name}")
+        shared = StorageBlock.registry[name]
+        structs = "".join(f"{self._declare(record.name)} " for record in shared.records)
+        return f"{structs}{BLOCK_LAYOUT} {declaration} {{ {shared.members} }}{rest}"
 
 
 def _included_file(match: re.Match, defines: Mapping[str, object], includer: str) -> str:

@@ -23,6 +23,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     yield
     for band in stages.bands:
         stages.clear(context)
+        context = context.with_blocks(stages.blocks_of(band))
         view = jittered_view(context.scene.camera, context.settings, band, iteration)
         camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons, iteration)
@@ -35,14 +36,13 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
             yield
             stages.shadow_catcher.cast(context, importons, band, iteration, segment)
-            blocks = stages.direct_light_blocks(band)
-            stages.direct_light.add(context, importons, blocks, band, iteration, segment, radii)
+            stages.direct_light.add(context, importons, band, iteration, segment, radii)
             yield
-            film.add_passes(context, camera_hits.camera.buffer, importons, band, iteration, segment)
-            film.add_caught_shadows(context, importons, stages.shadow_catcher, band, iteration, segment)
+            film.add_passes(context, importons, band, iteration, segment)
+            film.add_caught_shadows(context, importons, band, iteration, segment)
             light.add_direct_light(context, importons, stages.direct_light, film, band, iteration, segment)
-            groups.add_direct_light(context, importons, stages.direct_light, stages.final_gather, iteration)
-            importons.scatter(context, stages.scatter_blocks(band), band, iteration, segment, radii)
+            groups.add_direct_light(context, importons, stages.direct_light, iteration)
+            importons.scatter(context, band, iteration, segment, radii)
             film.add_seen_light(context, importons, band, iteration, segment)
             groups.add_seen_light(context, importons, iteration)
             stages.coverage.probe(context, importons, band, iteration, segment, radii)

@@ -121,7 +121,7 @@ class Learning:
     ) -> None:
         """Count which photons of an iteration contributed; ``findings``: by band, where it is learned from."""
         with context.timers.stage("learning"):
-            context.lights.tally(photons.stored_blocks, photons.slots)
+            context.lights.tally(photons.blocks, photons.slots)
             self.diffused_photons_found = None
             if findings:
                 taken = np.concatenate([band.photons_taken for band in findings])

@@ -78,10 +78,11 @@ def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> P
         footprints, ends = [], []
         for view in pilot_views(camera, columns, rows, stages.bands[0].rows):
             band = Band(columns, 0, int(view["height"][0]))
+            context = context.with_blocks(stages.blocks_of(band))
             stages.camera_hits.find(context, importons, view, band, iteration)
             importons.resolve(context, iteration, 0)
             stages.subsurface.walk_camera_paths(context, importons, band, iteration, 0)
-            importons.scatter(context, stages.scatter_blocks(band), band, iteration, 0, unlimited)
+            importons.scatter(context, band, iteration, 0, unlimited)
             footprints.append(importons.footprints(band.pixel_count))
             if follows_rays:
                 stride = -(-columns * rows // MOST_GATHERING_RAYS)

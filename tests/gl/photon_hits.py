@@ -19,10 +19,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     rays, hits = photons._rays.buffer, photons._hits
     count, lights = scene.settings.photons, context.lights
     photons._living.fill(count)
-    paths, directions, differentials = photons._paths, photons.photon_origins, photons._differentials
-    PhotonEmission(library).emit(
-        lights, rays, paths.buffer, directions.buffer, differentials.buffer, count, Iteration(2, seed=3)
-    )
+    PhotonEmission(library).emit(context, photons.blocks, count, Iteration(2, seed=3))
     context.acceleration.trace(rays, hits.buffer, photons._living)
     traced = hits.read(HIT.dtype, count).copy()
     hits.clear()

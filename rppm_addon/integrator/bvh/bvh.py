@@ -30,7 +30,7 @@ class Bvh(AccelerationStructure):
 
     shader = "bvh/traverse.glsl"
     remedy = "simplify the geometry"
-    _nodes = StorageBuffer("BVH nodes", NODE, texel_bytes=16)
+    _nodes = StorageBuffer("BVH nodes", NODE, texel_bytes=16, block="BvhNodes")
 
     def build(
         self,

@@ -9,7 +9,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Count, Declared
 from ...gl.buffers import SMALLEST, GrowingBuffer, refuse_large_block
 from ...gl.context import Context
-from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, ComputeProgram, ProgramLibrary, Resource
+from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from .records import LIVING_PATHS_HEADER
 
@@ -98,9 +98,7 @@ class LivingPaths(BufferSet):
         header["first"], header["count"], header["groups"] = _FIRST, count, groups
         paths.write(header)
 
-    def run(
-        self, program: ComputeProgram, buffers: Mapping[str, Resource], parameters: Mapping | None = None
-    ) -> None:
+    def run(self, program: ComputeProgram, buffers: Mapping[str, Bindable], parameters: Mapping | None = None) -> None:
         """Run a program for the paths of the list."""
         program.run_indirect(self.buffer, _GROUPS, {**buffers, "LivingPaths": self.buffer}, parameters)
 

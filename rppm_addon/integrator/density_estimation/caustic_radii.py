@@ -9,7 +9,6 @@ earlier iterations took; Eq. 2 shrinks what remains, so the estimate stays consi
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
@@ -17,6 +16,7 @@ from ...gl.timers import StageTimers
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
@@ -27,9 +27,10 @@ _LEAST_FRACTION = 0.25
 """Of the first iteration's photons: disks of fewer hold too few to tell how dense they lie."""
 
 
-class CausticRadii(BufferSet):
+class CausticRadii(Stage):
     """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
 
+    memory_group = "passes"
     remedy = "lower the resolution"
     _factors = FilmBuffer("radius factors", "float")
 
@@ -53,7 +54,7 @@ class CausticRadii(BufferSet):
         with timers.stage("learning"):
             self._program.run(
                 band.pixel_count,
-                {"PhotonCounts": sums.photon_counts, "RadiusFactors": self._factors.of(band)},
+                {**sums.blocks, "RadiusFactors": self._factors.of(band)},
                 {
                     "count": band.pixel_count,
                     "iteration": iteration.number,

@@ -8,13 +8,14 @@ import logging
 from collections.abc import Mapping
 from weakref import WeakKeyDictionary
 
-from ...gl.buffer_sets import BufferSet, Part
+from ...gl.buffer_sets import Part
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.timers import StageTimers
 from ...scene.settings import DensityEstimation, RenderSettings
 from ..common.iteration import Iteration
 from ..common.known import known
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from .photon_grid import PhotonGrid
 from .splat_sums import SplatSums, radiance_quantum
@@ -44,13 +45,14 @@ def _may_rasterize(context: Context) -> bool:
     return not context.is_software
 
 
-class DensityEstimator(BufferSet):
+class DensityEstimator(Stage):
     """Estimates densities at the importons of a band by the route that the settings ask for.
 
     AUTOMATIC takes the faster one: with the first photons and importons that are a thousand and more both are tried,
     but for software devices, on which the grid always is.
     """
 
+    memory_group = "density estimation"
     photon_list = Part(PhotonList)
     sums = Part(SplatSums)
 

@@ -68,7 +68,7 @@ class PhotonGrid(BufferSet):
 
     remedy = "lower the photons per iteration or the photon path length"
     _grid = StorageBuffer("photon grid", "uvec2", header="uvec4")
-    _sorted_photons = StorageBuffer("sorted photons", "uvec4", texel_bytes=16)
+    _sorted_photons = StorageBuffer("sorted photons", "uvec4", texel_bytes=16, block="SortedPhotons")
     _importon_grid = StorageBuffer(
         "importon grid", "uvec2", lambda sizes: _buckets(band_pixels(sizes)), "uvec4", _FEWER_PIXELS
     )
@@ -110,11 +110,9 @@ class PhotonGrid(BufferSet):
         cells = {"Buckets": self._grid.buffer}
         parameters = {**self._parameters, "count": photons.count}
         self._grid.clear()
-        self._count_photons.run(photons.count, {**photons.list_blocks, **cells}, parameters)
+        self._count_photons.run(photons.count, {**photons.blocks, **cells}, parameters)
         self._allocate.run(buckets, cells, {"count": buckets})
-        self._place_photons.run(
-            photons.count, {**photons.list_blocks, **cells, "SortedPhotons": self._sorted_photons.buffer}, parameters
-        )
+        self._place_photons.run(photons.count, {**photons.blocks, **self.blocks, **cells}, parameters)
 
     def _side(self, radius: float) -> float:
         """Of cells for spheres up to a radius, whose reach shaders/photon_grid/gather.comp makes a little longer."""
@@ -131,10 +129,10 @@ class PhotonGrid(BufferSet):
                 0,
                 {
                     **photons.blocks,
+                    **sums.blocks,
+                    **self.blocks,
                     "Importons": importons.importons,
                     "Buckets": self._grid.buffer,
-                    "SortedPhotons": self._sorted_photons.buffer,
-                    **sums.blocks,
                     "Visits": visits.buffer,
                     "UnfinishedVisits": unfinished.buffer,
                 },

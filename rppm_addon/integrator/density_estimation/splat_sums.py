@@ -8,7 +8,6 @@ import math
 import operator
 from collections.abc import Iterator
 
-import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
@@ -92,10 +91,12 @@ class SplatSums(BufferSet):
     """The sums of a band's pixels (shaders/splat_sums/sums.glsl), and how many photons each of them took."""
 
     remedy = "lower the resolution"
-    _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes))
-    _photon_counts = StorageBuffer("photon counts", "uint", lambda sizes: _COUNT_WORDS * band_pixels(sizes))
-    _light_sums = StorageBuffer("gathered radiance of light passes", "uint", _light_words)
-    _group_sums = StorageBuffer("gathered radiance of light groups", "uint", _group_words)
+    _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes), block="SplatSums")
+    _photon_counts = StorageBuffer(
+        "photon counts", "uint", lambda sizes: _COUNT_WORDS * band_pixels(sizes), block="PhotonCounts"
+    )
+    _light_sums = StorageBuffer("gathered radiance of light passes", "uint", _light_words, block="LightSums")
+    _group_sums = StorageBuffer("gathered radiance of light groups", "uint", _group_words, block="GroupSums")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -137,31 +138,6 @@ class SplatSums(BufferSet):
         if self.counting:
             self._photon_counts.clear()
 
-    @property
-    def buffer(self) -> moderngl.Buffer:
-        """To be read by shaders/splat_sums/read.glsl."""
-        return self._sums.buffer
-
-    @property
-    def blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of programs that add to the sums."""
-        return {
-            "SplatSums": self._sums.buffer,
-            "PhotonCounts": self._photon_counts.buffer,
-            "LightSums": self._light_sums.buffer,
-            "GroupSums": self._group_sums.buffer,
-        }
-
-    @property
-    def light_sums(self) -> moderngl.Buffer:
-        """Words as shaders/splat_sums/light_sums.glsl says."""
-        return self._light_sums.buffer
-
-    @property
-    def group_sums(self) -> moderngl.Buffer:
-        """Words as shaders/light_groups/group_sums.glsl says."""
-        return self._group_sums.buffer
-
     def read(self, count: int) -> np.ndarray:
         """(count, 2, 3) uint64 quanta of the band's first pixels: what their importons took, what their rays found."""
         return self._sums.read(np.uint64, 6 * count).reshape(-1, 2, 3)
@@ -170,11 +146,6 @@ class SplatSums(BufferSet):
     def photons_for_one(self) -> int:
         """How many photons one that is counted stands for."""
         return 2 if self.parameters["roulette"] else 1
-
-    @property
-    def photon_counts(self) -> moderngl.Buffer:
-        """Words at diffused_place, caustic_place and signed_place (shaders/splat_sums/sums.glsl)."""
-        return self._photon_counts.buffer
 
     def photons_taken(self, count: int) -> np.ndarray:
         """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:

@@ -7,7 +7,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import DrawProgram, ProgramLibrary
+from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
 from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
 from ..common.band import MOST_RASTER_PIXELS
@@ -55,10 +55,14 @@ class Splatting(BufferSet):
     """Adds photons to the importons of a band, one route of density estimation (density_estimator.py)."""
 
     _jobs = StorageBuffer(
-        "splat jobs", "uvec4", header="uvec4", remedy="lower the photons per iteration or the photon path length"
+        "splat jobs",
+        "uvec4",
+        header="uvec4",
+        remedy="lower the photons per iteration or the photon path length",
+        block="Jobs",
     )
-    _heads = StorageBuffer("splat cubemap", "uint", _head_count)
-    _core = StorageBuffer("splat core list", "uint", band_pixels, header="uint")
+    _heads = StorageBuffer("splat cubemap", "uint", _head_count, block="Heads")
+    _core = StorageBuffer("splat core list", "uint", band_pixels, header="uint", block="Core")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -99,7 +103,7 @@ class Splatting(BufferSet):
         program: DrawProgram,
         view: moderngl.Framebuffer,
         size: tuple[int, int],
-        blocks: dict[str, moderngl.Buffer],
+        blocks: dict[str, Bindable],
         parameters: dict[str, object],
     ) -> None:
         """The quads of the jobs, into a view's part of that size."""
@@ -107,7 +111,7 @@ class Splatting(BufferSet):
         program.draw(
             view,
             self._jobs.buffer,
-            {"Jobs": self._jobs.buffer, **blocks},
+            {**self.blocks, **blocks},
             {"width": width, "height": height, **parameters},
             viewport=(0, 0, width, height),
         )
@@ -119,7 +123,7 @@ class Splatting(BufferSet):
         self._reset_jobs()
         self._direct_jobs.run(
             photons.count,
-            {**photons.list_blocks, "Camera": raster.camera, "Jobs": self._jobs.buffer},
+            {**photons.blocks, **self.blocks, "Camera": raster.camera},
             {
                 "count": photons.count,
                 "least_radius": importons.least_radius(photons),
@@ -152,12 +156,12 @@ class Splatting(BufferSet):
         }
         importons.living.run(
             self._insert,
-            {"Importons": importons.importons, "Heads": self._heads.buffer, "Core": self._core.buffer},
+            {**self.blocks, "Importons": importons.importons},
             {**cube, "count": importons.living.most},
         )
         self._indirect_jobs.run(
             photons.count,
-            {**photons.list_blocks, "Heads": self._heads.buffer, "Jobs": self._jobs.buffer},
+            {**photons.blocks, **self.blocks},
             {**cube, "count": photons.count},
         )
         splats = {**photons.blocks, "Importons": importons.importons, **sums.blocks}
@@ -165,11 +169,11 @@ class Splatting(BufferSet):
             self._indirect_program,
             self._cube_view,
             self._cube_size,
-            {"Heads": self._heads.buffer, **splats},
+            splats,
             estimate,
         )
         self._core_program.run(
             photons.count,
-            {"Core": self._core.buffer, **photons.list_blocks, **splats},
+            {**self.blocks, **splats},
             {**cube, "count": photons.count},
         )

@@ -12,7 +12,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...scene.lights import UNLIMITED_BOUNCES
 from ..common.living_paths import LivingPaths
@@ -49,7 +49,7 @@ class PhotonList(BufferSet):
     ``indirect_count`` last scattered by what stores photons."""
 
     remedy = "lower the photons per iteration or the photon path length"
-    _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec3")
+    _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec3", block="StoredPhotons")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -63,21 +63,19 @@ class PhotonList(BufferSet):
 
     def collect(
         self,
-        blocks: Mapping[str, moderngl.Buffer],
-        photon_origins: moderngl.Buffer,
+        blocks: Mapping[str, Bindable],
         slots: int,
         takes_direct: DirectPhotons,
     ) -> None:
         """List the photons that are stored, straight from lights only as ``takes_direct`` says.
 
-        blocks: Photons and PhotonRange, of no more than so many slots.
-        photon_origins: PHOTON_ORIGIN of the photons that left the lights.
+        blocks: Photons, PhotonRange and PhotonOrigins, of no more than so many slots.
         """
         self._numbers.require_items(slots)
         self._numbers.write(np.zeros(3, np.uint32))
         self._program.run(
             slots,
-            {**blocks, "StoredPhotons": self._numbers.buffer, "PhotonOrigins": photon_origins},
+            {**blocks, **self.blocks},
             {"count": slots, "takes_direct": takes_direct.value},
         )
         self.count, self.diffused_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
@@ -120,14 +118,14 @@ class StoredPhotons:
         )
 
     @property
-    def list_blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of programs that go through the list."""
-        return {"Photons": self.photons, "StoredPhotons": self.numbers}
-
-    @property
-    def blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of programs that estimate densities."""
-        return {"Photons": self.photons, "PhotonOrigins": self.photon_origins, "PhotonGroups": self.groups}
+    def blocks(self) -> dict[str, Bindable]:
+        """Storage blocks of programs that go through the list, or estimate densities."""
+        return {
+            "Photons": self.photons,
+            "StoredPhotons": self.numbers,
+            "PhotonOrigins": self.photon_origins,
+            "PhotonGroups": self.groups,
+        }
 
 
 @dataclass(frozen=True)

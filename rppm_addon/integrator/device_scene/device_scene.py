@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh
@@ -74,7 +74,19 @@ class DeviceScene:
             self.acceleration.center,
             self.resolve,
             self._timers,
+            self._blocks,
         )
+
+    @property
+    def _blocks(self) -> dict[str, Bindable]:
+        """Storage blocks and textures of the scene, each declared by its owner."""
+        return {
+            **self.geometry.blocks,
+            **self.materials.buffers,
+            **self.resolve.blocks,
+            **self.lights.blocks,
+            **self.acceleration.structure.traversal_buffers,
+        }
 
     def forget(self) -> None:
         """Have the next update build everything."""

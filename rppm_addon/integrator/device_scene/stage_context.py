@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What every stage of an iteration works with."""
 
+import dataclasses
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...gl.programs import Bindable
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.scene import Scene
@@ -29,6 +32,12 @@ class StageContext:
     """Of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
     resolve: Resolve
     timers: StageTimers
+    blocks: Mapping[str, Bindable]
+    """Storage blocks and textures of the scene, and of the stages once with_blocks has added them, by name."""
+
+    def with_blocks(self, blocks: Mapping[str, Bindable]) -> "StageContext":
+        """The same context, in which stages find more storage blocks."""
+        return dataclasses.replace(self, blocks={**self.blocks, **blocks})
 
     @property
     def settings(self) -> RenderSettings:

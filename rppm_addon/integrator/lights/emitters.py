@@ -57,7 +57,7 @@ class Emitters(BufferSet):
     along a curve, and ``links`` (count,) are the numbers of their LightLinks.
     """
 
-    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16)
+    triangles = StorageBuffer("emissive triangles", EMISSIVE_TRIANGLE, texel_bytes=16, block="EmissiveTriangles")
     _leaf_numbers = StorageBuffer("leaves of emissive triangles", "uint")
     _rays = StorageBuffer("rays to emitters", RAY)
     _hits = StorageBuffer("places on emitters", HIT)

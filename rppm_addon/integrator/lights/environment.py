@@ -56,7 +56,7 @@ class Environment(BufferSet):
     ``radiance`` (3,) is that of a constant world, or 1 where textures give it; ``mean_radiance`` (3,) W/(m^2 sr).
     """
 
-    distribution = StorageBuffer("environment distribution", "float")
+    distribution = StorageBuffer("environment distribution", "float", block="EnvironmentDistribution")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)

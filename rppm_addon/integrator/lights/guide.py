@@ -9,13 +9,12 @@ by the density, so energy stays as it is.
 
 from collections.abc import Mapping
 
-import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.records import LightShape
@@ -90,9 +89,9 @@ def starts(probability: np.ndarray) -> np.ndarray:
 class Guide(BufferSet):
     """Cells of all lights: what is known of them, and what an iteration adds."""
 
-    _starts = StorageBuffer("emission guide", "uint")
-    _tallies = StorageBuffer("emission tallies", "uvec2")
-    _photon_cells = StorageBuffer("photon cells", "uint", remedy="lower the photons per iteration")
+    _starts = StorageBuffer("emission guide", "uint", block="Guide")
+    _tallies = StorageBuffer("emission tallies", "uvec2", block="Tallies")
+    _photon_cells = StorageBuffer("photon cells", "uint", remedy="lower the photons per iteration", block="PhotonCells")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -105,11 +104,6 @@ class Guide(BufferSet):
         """(lights,) how many times as many of a light's photons contribute as if they left evenly."""
         self.even_contribution = np.ones(0)
         """(lights,) the fraction that would contribute if they left evenly."""
-
-    @property
-    def buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of photon_emission/emit.comp."""
-        return {"Guide": self._starts.buffer, "PhotonCells": self._photon_cells.buffer}
 
     @property
     def _cell_count(self) -> int:
@@ -127,14 +121,14 @@ class Guide(BufferSet):
         self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
         self._photon_cells.require_items(photons)
 
-    def tally(self, blocks: Mapping[str, moderngl.Buffer], slots: int, count: int) -> None:
+    def tally(self, blocks: Mapping[str, Bindable], slots: int, count: int) -> None:
         """Count an iteration's photons that contributed, once they have been splatted.
 
         blocks: Photons and PhotonRange, of no more than so many slots. count: photons that left the lights.
         """
         self._program.run(
             max(slots, count),
-            {**blocks, "PhotonCells": self._photon_cells.buffer, "Tallies": self._tallies.buffer},
+            {**self.blocks, **blocks},
             {"count": count},
         )
 

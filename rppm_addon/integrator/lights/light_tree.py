@@ -28,7 +28,7 @@ class LightTree(BufferSet):
     """
 
     remedy = "let fewer triangles emit light: lower the children of particles or the subdivision of what does"
-    nodes = StorageBuffer("light tree", LIGHT_NODE, texel_bytes=16)
+    nodes = StorageBuffer("light tree", LIGHT_NODE, texel_bytes=16, block="LightNodes")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary, Resource
+from ...gl.programs import Bindable, ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
@@ -106,17 +106,17 @@ def shadows_are_of_all(scene: Scene) -> bool:
 class Lights(BufferSet):
     """The lights of a scene: buffers for the shaders that include lights/lights.glsl."""
 
-    _lights = StorageBuffer("lights", LIGHT)
+    _lights = StorageBuffer("lights", LIGHT, block="Lights")
     emitters = Part(Emitters)
-    targets = StorageBuffer("photon targets", "vec4")
+    targets = StorageBuffer("photon targets", "vec4", block="Targets")
     """Spheres that photons are aimed at (caustic_casters.py)."""
     environment = Part(Environment)
     light_maps = Part(LightMaps)
     guide = Part(Guide)
     _light_tree = Part(LightTree)
-    links = StorageBuffer("light links", LIGHT_LINK)
+    links = StorageBuffer("light links", LIGHT_LINK, block="LightLinks")
     """By number, where ``links_lights``."""
-    group_table = StorageBuffer("table of light groups", "uint")
+    group_table = StorageBuffer("table of light groups", "uint", block="LightGroupTable")
     """LightGroupTable, where there are any."""
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
@@ -160,21 +160,14 @@ class Lights(BufferSet):
         return self._lights.buffer
 
     @property
-    def buffers(self) -> dict[str, Resource]:
-        """Storage blocks and textures of lights/lights.glsl."""
+    def blocks(self) -> dict[str, Bindable]:
+        """Storage blocks and textures of lights/lights.glsl, lights/light_tree.glsl and photon_emission/emit.comp."""
         return {
+            **super().blocks,
             **self.environment.textures,
             "light_maps": self.light_maps.texture,
-            "Lights": self.table_buffer,
-            "EmissiveTriangles": self.emitters.triangles.buffer,
             "Triangles": known(self._triangles),
-            "EnvironmentDistribution": self.environment.distribution.buffer,
         }
-
-    @property
-    def tree_buffers(self) -> dict[str, Resource]:
-        """Storage blocks and textures of lights/light_tree.glsl."""
-        return {**self.buffers, "LightNodes": self._light_tree.nodes.buffer}
 
     def linking_blocks(self, contributions: moderngl.Buffer) -> dict[str, moderngl.Buffer] | None:
         """Storage blocks of shadow rays that ask what may be in their way; None where everything is."""
@@ -381,7 +374,7 @@ class Lights(BufferSet):
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
-    def tally(self, photons: Mapping[str, moderngl.Buffer], slots: int) -> None:
+    def tally(self, photons: Mapping[str, Bindable], slots: int) -> None:
         """Count what an iteration's photons were good for, once they have been splatted (Guide.tally)."""
         self.guide.tally(photons, slots, self._photons)
 

@@ -3,19 +3,21 @@
 
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import CAMERA_VIEW
+from ..common.stage import Stage
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
 
-class CameraHits(BufferSet):
+class CameraHits(Stage):
     """What GBuffer and PrimaryRays have in common."""
 
-    camera = StorageBuffer("camera", CAMERA_VIEW, 1)
+    memory_group = "camera paths"
+    camera = StorageBuffer("camera", CAMERA_VIEW, 1, block="Camera")
 
     def raster(self, band: Band) -> CameraRaster | None:
         """Where the band's first hits lie, for photons to be splatted onto; None where they lie on no raster."""

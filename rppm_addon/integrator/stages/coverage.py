@@ -35,11 +35,7 @@ class Coverage:
             program = self._library.compute("coverage/probe.comp", acceleration.traversal_defines)
             importons.living.run(
                 program,
-                {
-                    **acceleration.traversal_buffers,
-                    "Importons": importons.importons.buffer,
-                    "Closures": importons.lit_blocks["Closures"],
-                },
+                {**context.blocks, **importons.lit_blocks},
                 {
                     "seed": iteration.seed,
                     "iteration": iteration.number,

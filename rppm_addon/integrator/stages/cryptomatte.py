@@ -69,7 +69,7 @@ class Cryptomatte(BufferSet):
     _objects = FilmBuffer("cryptomatte of objects", "uvec2", _pairs(OBJECTS))
     _materials = FilmBuffer("cryptomatte of materials", "uvec2", _pairs(MATERIALS))
     _assets = FilmBuffer("cryptomatte of assets", "uvec2", _pairs(ASSETS))
-    _caught_after = StorageBuffer("paths behind shadow catchers", "uint", _caught_paths)
+    _caught_after = StorageBuffer("paths behind shadow catchers", "uint", _caught_paths, block="CaughtAfter")
     _object_names = StorageBuffer("identifiers of objects", "uint")
     _material_names = StorageBuffer("identifiers of materials", "uint")
     _asset_names = StorageBuffer("identifiers of assets", "uint")
@@ -97,11 +97,11 @@ class Cryptomatte(BufferSet):
             importons.living.run(
                 self._program,
                 {
-                    **importons.path_blocks,
-                    "Attributes": context.geometry.attributes.buffer,
+                    **context.blocks,
+                    **importons.blocks,
+                    **self.blocks,
                     "Identifiers": names.buffer,
                     "Pairs": pairs.of(band),
-                    "CaughtAfter": self._caught_after.buffer,
                 },
                 {
                     "iteration": iteration.number_in_film,

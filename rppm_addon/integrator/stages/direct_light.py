@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import moderngl
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
@@ -14,6 +14,7 @@ from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import CLOSURE, HIT, LIGHT_SPLIT, RAY
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..device_scene.stage_context import StageContext
@@ -47,15 +48,16 @@ def _told_pixels(sizes: StageSizes) -> int:
     return max(split_pixels(sizes), grouped_pixels(sizes))
 
 
-class DirectLight(BufferSet):
+class DirectLight(Stage):
     """A sampled light and a shadow ray, or several, for every camera path and segment."""
 
+    memory_group = "direct light"
     remedy = "lower the resolution"
-    _rays = StorageBuffer("shadow rays", RAY, band_pixels)
-    contributions = StorageBuffer("direct light", "vec4", band_pixels)
-    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _told_pixels)
-    visibility = StorageBuffer("visibility", "uint", band_pixels)
-    triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels)
+    _rays = StorageBuffer("shadow rays", RAY, band_pixels, block="ShadowRays")
+    contributions = StorageBuffer("direct light", "vec4", band_pixels, block="Contributions")
+    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _told_pixels, block="LightSplits")
+    visibility = StorageBuffer("visibility", "uint", band_pixels, block="Visibility")
+    triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels, block="LightTriangles")
     living_rays = PathList("living shadow rays", band_pixels)
     # Of scenes with transparent surfaces.
     _hits = StorageBuffer("hits of shadow rays", HIT)
@@ -75,7 +77,6 @@ class DirectLight(BufferSet):
         self,
         context: StageContext,
         importons: Importons,
-        blocks: Mapping[str, moderngl.Buffer],
         band: Band,
         iteration: Iteration,
         segment: int,
@@ -84,7 +85,6 @@ class DirectLight(BufferSet):
         """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
         their gathering rays found.
 
-        blocks: the storage blocks of other stages (StageSet.direct_light_blocks).
         To be called before the paths scatter on. Nothing is added where photons bring direct light, or where none of
         it would come to the film.
         """
@@ -92,7 +92,7 @@ class DirectLight(BufferSet):
             return
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):
-                self._sample_lights(context, importons, blocks, band, iteration, segment, radii, ray)
+                self._sample_lights(context, importons, band, iteration, segment, radii, ray)
                 living = self.living_rays
                 living.take(importons.living, self._rays.buffer)
                 if living.known_empty:
@@ -114,15 +114,7 @@ class DirectLight(BufferSet):
                     context.acceleration.occluded(
                         self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
                     )
-                living.run(
-                    self._add,
-                    {
-                        "Visibility": self.visibility.buffer,
-                        "Contributions": self.contributions.buffer,
-                        "FoundRadiances": blocks["FoundRadiances"],
-                        "Radiances": importons.radiances.buffer,
-                    },
-                )
+                living.run(self._add, {**context.blocks, **self.blocks})
 
     def _pass_surfaces(
         self,
@@ -143,48 +135,31 @@ class DirectLight(BufferSet):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return
             context.acceleration.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
-            met = {
+            blocks = {
+                **context.blocks,
+                **importons.blocks,
+                **self.blocks,
                 "Hits": hits.buffer,
-                "Attributes": context.geometry.attributes.buffer,
-                "Materials": context.materials.buffers["Materials"],
-                "ShadowRays": rays.buffer,
-                "Visibility": self.visibility.buffer,
+                "Closures": closures.buffer,
             }
-            passing.run(self._meet, met)
+            passing.run(self._meet, blocks)
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
             context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
-            passed = {
-                "Closures": closures.buffer,
-                "ShadowRays": rays.buffer,
-                "Contributions": self.contributions.buffer,
-                "CameraPaths": importons.paths.buffer,
-            }
-            passing.run(self._pass, passed, {"passed": surfaces, "transparent_max_bounces": most})
+            passing.run(self._pass, blocks, {"passed": surfaces, "transparent_max_bounces": most})
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
-        self.living_rays.run(
-            self._soften,
-            {
-                "Closures": importons.lit_blocks["Closures"],
-                "ShadowRays": self._rays.buffer,
-                "Contributions": self.contributions.buffer,
-                "Triangles": context.geometry.triangles.buffer,
-                "Attributes": context.geometry.attributes.buffer,
-                "ShadingInstances": context.resolve.shading_instances,
-            },
-        )
+        self.living_rays.run(self._soften, {**context.blocks, **importons.lit_blocks, **self.blocks})
 
     def _sample_lights(
         self,
         context: StageContext,
         importons: Importons,
-        blocks: Mapping[str, moderngl.Buffer],
         band: Band,
         iteration: Iteration,
         segment: int,
@@ -194,17 +169,7 @@ class DirectLight(BufferSet):
         """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
         importons.living.run(
             self._sample,
-            {
-                **context.lights.tree_buffers,
-                **importons.lit_blocks,
-                "ShadowRays": self._rays.buffer,
-                "Contributions": self.contributions.buffer,
-                "LightSplits": self.splits.buffer,
-                "LightTriangles": self.triangles.buffer,
-                "Materials": context.materials.buffers["Materials"],
-                "Camera": blocks["Camera"],
-                "RadiusFactors": blocks["RadiusFactors"],
-            },
+            {**context.blocks, **importons.lit_blocks, **self.blocks},
             {
                 **context.lights.parameters(iteration),
                 **radii.parameters,

@@ -6,24 +6,24 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, Part, StorageBuffer, StorageBuffers
+from ...gl.buffer_sets import Part, StorageBuffer, StorageBuffers
 from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES, SCATTERED_LIGHT, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer, FilmParts
 from ..common.iteration import Iteration
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 from .cryptomatte import Cryptomatte
 from .importons import Importons
 from .motion_vectors import MotionVectors
-from .shadow_catcher import ShadowCatcher
 
 Record(
     "PassParameters",
@@ -93,16 +93,17 @@ def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
     return radiance
 
 
-class Film(BufferSet):
+class Film(Stage):
     """Means over the iterations: 16 bytes of radiance and alpha a pixel, 4 for each channel of a pass, and 8 of their
     counts where there are passes; 16 more where viewports filter the picture."""
 
+    memory_group = "passes"
     remedy = "lower the resolution"
     _radiance = FilmBuffer("film", "vec4", together=True)
     _values = StorageBuffers("pass values", "float", _pass_values)
     _photon_light = FilmBuffer("photons' part of the film", "vec4", lambda sizes: sizes.is_filtered, together=True)
     _counts = FilmBuffer("pass counts", "uvec2", _looks)
-    _paths = StorageBuffer("pass paths", "vec4", _pass_paths)
+    _paths = StorageBuffer("pass paths", "vec4", _pass_paths, block="PassPaths")
     _cryptomatte = Part(Cryptomatte)
     _motion_vectors = Part(MotionVectors)
     _aov_values = FilmBuffer("AOVs", "float", aov_channels)
@@ -132,32 +133,25 @@ class Film(BufferSet):
     def add_passes(
         self,
         context: StageContext,
-        camera: moderngl.Buffer,
         importons: Importons,
         band: Band,
         iteration: Iteration,
         segment: int,
     ) -> None:
-        """Add the first surfaces that the camera paths of a band have found in a segment; ``camera``: CAMERA_VIEW."""
+        """Add the first surfaces that the camera paths of a band have found in a segment."""
         if not iteration.enters_film:
             return
         self._cryptomatte.add(context, importons, band, iteration, segment)
         if not self._looks:
             return
-        self._motion_vectors.add(context, camera, importons, self._counts.of(band), band, iteration, segment)
+        self._motion_vectors.add(context, importons, self._counts.of(band), band, iteration, segment)
         importons.living.run(
             self._pass_program,
             {
-                "Camera": camera,
-                **importons.path_blocks,
-                "PassCounts": self._counts.of(band),
+                **context.blocks,
+                **importons.blocks,
                 **self.pass_blocks(band),
-                "Hits": importons.hits.buffer,
-                "Attributes": context.geometry.attributes.buffer,
-                "Radiances": importons.radiances.buffer,
-                "ShadingInstances": context.resolve.shading_instances,
-                "AlbedoTables": context.materials.buffers["AlbedoTables"],
-                "Materials": context.materials.buffers["Materials"],
+                "PassCounts": self._counts.of(band),
             },
             self._parameters(context, band, iteration, segment),
         )
@@ -166,7 +160,6 @@ class Film(BufferSet):
         self,
         context: StageContext,
         importons: Importons,
-        catcher: ShadowCatcher,
         band: Band,
         iteration: Iteration,
         segment: int,
@@ -177,11 +170,7 @@ class Film(BufferSet):
             return
         importons.living.run(
             self._caught_shadows,
-            {
-                **importons.path_blocks,
-                "LitCatchers": catcher.lit.buffer,
-                **self.pass_blocks(band),
-            },
+            {**context.blocks, **importons.blocks, **self.pass_blocks(band)},
             self._parameters(context, band, iteration, segment),
         )
 
@@ -193,17 +182,13 @@ class Film(BufferSet):
             return
         importons.living.run(
             self._seen_light,
-            {
-                **self.pass_blocks(band),
-                "Importons": importons.importons.buffer,
-                "Radiances": importons.radiances.buffer,
-            },
+            {**importons.blocks, **self.pass_blocks(band)},
             self._parameters(context, band, iteration, segment),
         )
 
-    def pass_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
+    def pass_blocks(self, band: Band) -> dict[str, Bindable]:
         """Storage blocks of programs that include shaders/film/passes.glsl."""
-        return {"PassValues": self._values[self._bands.index(band)].buffer, "PassPaths": self._paths.buffer}
+        return {**self.blocks, "PassValues": self._values[self._bands.index(band)].buffer}
 
     def group_values(self, band: Band) -> moderngl.Buffer:
         """GroupValues of a band."""
@@ -237,8 +222,8 @@ class Film(BufferSet):
             self._accumulate.run(
                 band.pixel_count,
                 {
+                    **sums.blocks,
                     "Radiances": radiances.buffer,
-                    "SplatSums": sums.buffer,
                     "Film": self._radiance.of(band),
                     "PhotonLight": self._photon_light.of(band),
                 },
@@ -257,7 +242,7 @@ class Film(BufferSet):
             count = band.pixel_count * self._aov_channels
             self._accumulate_aovs.run(
                 count,
-                {"AovValues": importons.aovs.buffer, "FilmAovs": self._aov_values.of(band)},
+                {**importons.blocks, "FilmAovs": self._aov_values.of(band)},
                 {"count": count, "iteration": iteration.number_in_film},
             )
 

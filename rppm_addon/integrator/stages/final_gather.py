@@ -10,7 +10,7 @@ import math
 
 import moderngl
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -18,6 +18,7 @@ from ...gl.records import Record
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import GATHERING_VERTEX
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import SplatSums
@@ -41,12 +42,13 @@ SHARED_RADIUS = 5.0
 """Times the Eq. 3 radius: indirect light varies more slowly than caustics."""
 
 
-class FinalGather(BufferSet):
+class FinalGather(Stage):
     """Where the paths of a band set out to gather, and what they found."""
 
+    memory_group = "final gather"
     remedy = "lower the resolution"
-    vertices = StorageBuffer("gathering vertices", GATHERING_VERTEX, band_pixels)
-    radiances = StorageBuffer("found radiance", "vec4", band_pixels)
+    vertices = StorageBuffer("gathering vertices", GATHERING_VERTEX, band_pixels, block="GatheringVertices")
+    radiances = StorageBuffer("found radiance", "vec4", band_pixels, block="FoundRadiances")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -75,11 +77,7 @@ class FinalGather(BufferSet):
         with context.timers.stage("final gather"):
             self._found_program.run(
                 band.pixel_count,
-                {
-                    "SplatSums": sums.buffer,
-                    "FoundRadiances": self.radiances.buffer,
-                    "GatheringVertices": self.vertices.buffer,
-                },
+                {**sums.blocks, **self.blocks},
                 {"count": band.pixel_count, "quantum": sums.quantum},
             )
             self.share_found(self.radiances.buffer, radiances.buffer, band, iteration, radii)
@@ -91,7 +89,7 @@ class FinalGather(BufferSet):
         radius = SHARED_RADIUS * radii.in_pixels
         self._share_program.run(
             band.pixel_count,
-            {"FoundRadiances": found, "GatheringVertices": self.vertices.buffer, "Radiances": radiances},
+            {**self.blocks, "FoundRadiances": found, "Radiances": radiances},
             {
                 "count": band.pixel_count,
                 "width": band.columns,

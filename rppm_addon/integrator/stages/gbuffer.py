@@ -90,18 +90,11 @@ class GBuffer(CameraHits):
             self._draw.draw(
                 self._framebuffer,
                 3 * geometry.triangle_count,
-                {"Camera": self.camera.buffer, "Triangles": geometry.triangles.buffer},
+                {**context.blocks, **self.blocks},
                 viewport=(0, 0, band.columns, band.rows),
                 state=moderngl.DEPTH_TEST,
             )
             self._hits.run(
                 band.pixel_count,
-                {
-                    "visibility": self._visibility,
-                    "Camera": self.camera.buffer,
-                    "Triangles": geometry.triangles.buffer,
-                    "Rays": importons.rays.buffer,
-                    "Hits": importons.hits.buffer,
-                    "CameraPaths": importons.paths.buffer,
-                },
+                {**context.blocks, **importons.blocks, **self.blocks, "visibility": self._visibility},
             )

@@ -1,20 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """TraceImportons: camera paths through specular surfaces, and the importons they leave."""
 
-from collections.abc import Mapping
-
-import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...scene.settings import DirectLight
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, exiting_pixels
 from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons
@@ -44,20 +42,21 @@ def _band_aovs(sizes: StageSizes) -> int:
     return band_pixels(sizes) * aov_channels(sizes)
 
 
-class Importons(BufferSet):
+class Importons(Stage):
     """Camera paths of one band and the importon that each leaves in the current segment."""
 
+    memory_group = "camera paths"
     remedy = "lower the resolution"
-    rays = StorageBuffer("camera rays", RAY, band_pixels)
-    hits = StorageBuffer("camera hits", HIT, band_pixels)
-    paths = StorageBuffer("camera paths", CAMERA_PATH, band_pixels)
-    closures = StorageBuffer("camera closures", CLOSURE, band_pixels)
-    exit_closures = StorageBuffer("exit closures", CLOSURE, exiting_pixels)
+    rays = StorageBuffer("camera rays", RAY, band_pixels, block="Rays")
+    hits = StorageBuffer("camera hits", HIT, band_pixels, block="Hits")
+    paths = StorageBuffer("camera paths", CAMERA_PATH, band_pixels, block="CameraPaths")
+    closures = StorageBuffer("camera closures", CLOSURE, band_pixels, block="Closures")
+    exit_closures = StorageBuffer("exit closures", CLOSURE, exiting_pixels, block="ExitClosures")
     """Where the paths have come out that went below a surface, else as ``closures``; where no light goes below
     surfaces there are none."""
-    importons = StorageBuffer("importons", IMPORTON, band_pixels)
-    radiances = StorageBuffer("band radiance", "vec4", band_pixels)
-    aovs = StorageBuffer("band AOVs", "float", _band_aovs)
+    importons = StorageBuffer("importons", IMPORTON, band_pixels, block="Importons")
+    radiances = StorageBuffer("band radiance", "vec4", band_pixels, block="Radiances")
+    aovs = StorageBuffer("band AOVs", "float", _band_aovs, block="AovValues")
     """Of each path the channels of the AOV passes, as the nodes of materials add to them."""
     living = PathList("living camera paths", band_pixels, to_keep=True)
 
@@ -74,14 +73,9 @@ class Importons(BufferSet):
             self.aovs.clear()
 
     @property
-    def path_blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of programs that look at the paths and the surfaces that they have met."""
-        return {"Closures": self.closures.buffer, "Rays": self.rays.buffer, "CameraPaths": self.paths.buffer}
-
-    @property
-    def lit_blocks(self) -> dict[str, moderngl.Buffer]:
-        """The same of programs that look at where light comes to the paths, which may be at another place."""
-        return self.path_blocks | {"Closures": self._lit_closures.buffer}
+    def lit_blocks(self) -> dict[str, Bindable]:
+        """The blocks, for programs that look at where light comes to the paths, which may be at another place."""
+        return self.blocks | {"Closures": self._lit_closures.buffer}
 
     def trace(self, context: StageContext, segment: int) -> bool:
         """Find what the paths that go on hit; whether any may do so."""
@@ -112,28 +106,17 @@ class Importons(BufferSet):
     def scatter(
         self,
         context: StageContext,
-        blocks: Mapping[str, moderngl.Buffer],
         band: Band,
         iteration: Iteration,
         segment: int,
         radii: Radii,
     ) -> None:
-        """Collect emission, leave importons, and set off the specular rays of the next segment.
-
-        blocks: the storage blocks of other stages (StageSet.scatter_blocks).
-        """
+        """Collect emission, leave importons, and set off the specular rays of the next segment."""
         settings, lights = context.settings, context.lights
         with context.timers.stage("camera scattering"):
             self.living.run(
                 self._scatter,
-                {
-                    **lights.tree_buffers,
-                    **self.lit_blocks,
-                    "Importons": self.importons.buffer,
-                    "Radiances": self.radiances.buffer,
-                    "Materials": context.materials.buffers["Materials"],
-                    **blocks,
-                },
+                {**context.blocks, **self.lit_blocks},
                 {
                     **lights.parameters(iteration),
                     "segment": segment,

@@ -5,7 +5,7 @@ Whatever adds to Combined adds the same to the group of the light that it comes 
 none add up to it.
 """
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ComputeProgram, ProgramLibrary
 from ...gl.records import Record
@@ -13,6 +13,7 @@ from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
 from ..common.iteration import Iteration
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import SplatSums
@@ -46,13 +47,14 @@ def _grouped_values(sizes: StageSizes) -> int:
     return _CHANNELS * _KINDS_OF_LIGHT * len(sizes.light_groups) * band_pixels(sizes)
 
 
-class LightGroups(BufferSet):
+class LightGroups(Stage):
     """Finds the light of each group in a band and adds it to the film's passes; without groups there are neither
     programs nor buffers."""
 
+    memory_group = "passes"
     remedy = "lower the resolution or have fewer light groups"
-    _grouped = StorageBuffer("light of groups", "float", _grouped_values)
-    _seen = StorageBuffer("seen light of groups", "vec4", grouped_pixels)
+    _grouped = StorageBuffer("light of groups", "float", _grouped_values, block="GroupedLight")
+    _seen = StorageBuffer("seen light of groups", "vec4", grouped_pixels, block="SeenLight")
     _found = StorageBuffer("found light of a group", "vec4", grouped_pixels)
     _taken = StorageBuffer("gathered light of a group", "vec4", grouped_pixels)
 
@@ -74,7 +76,6 @@ class LightGroups(BufferSet):
         context: StageContext,
         importons: Importons,
         direct_light: DirectLight,
-        final_gather: FinalGather,
         iteration: Iteration,
     ) -> None:
         """What DirectLight.add has added, and light objects that the paths pass, before they scatter on."""
@@ -85,29 +86,12 @@ class LightGroups(BufferSet):
             if context.settings.direct_light is DirectLightMode.RAYS:
                 direct_light.living_rays.run(
                     self._programs["direct"],
-                    {
-                        "Visibility": direct_light.visibility.buffer,
-                        "Contributions": direct_light.contributions.buffer,
-                        "LightSplits": direct_light.splits.buffer,
-                        "LightTriangles": direct_light.triangles.buffer,
-                        "Attributes": context.geometry.attributes.buffer,
-                        "LightGroupTable": lights.group_table.buffer,
-                        "GroupedLight": self._grouped.buffer,
-                    },
+                    {**context.blocks, **direct_light.blocks, **self.blocks},
                     self._parameters(context),
                 )
             importons.living.run(
                 self._programs["passed"],
-                {
-                    **lights.tree_buffers,
-                    **importons.path_blocks,
-                    "GatheringVertices": final_gather.vertices.buffer,
-                    "Radiances": importons.radiances.buffer,
-                    "SeenLight": self._seen.buffer,
-                    "LightGroupTable": lights.group_table.buffer,
-                    "GroupedLight": self._grouped.buffer,
-                    "Materials": context.materials.buffers["Materials"],
-                },
+                {**context.blocks, **importons.blocks, **self.blocks},
                 {
                     **lights.parameters(iteration),
                     "groups": self._groups,
@@ -122,14 +106,7 @@ class LightGroups(BufferSet):
         with context.timers.stage("light groups"):
             importons.living.run(
                 self._programs["seen"],
-                {
-                    "Closures": importons.closures.buffer,
-                    "Radiances": importons.radiances.buffer,
-                    "SeenLight": self._seen.buffer,
-                    "Attributes": context.geometry.attributes.buffer,
-                    "LightGroupTable": context.lights.group_table.buffer,
-                    "GroupedLight": self._grouped.buffer,
-                },
+                {**context.blocks, **importons.blocks, **self.blocks},
                 self._parameters(context),
             )
 
@@ -147,7 +124,7 @@ class LightGroups(BufferSet):
         if not self._groups:
             return
         with context.timers.stage("light groups"):
-            light = {"GroupedLight": self._grouped.buffer, "GroupSums": sums.group_sums}
+            light = {**sums.blocks, **self.blocks}
             for group in range(self._groups):
                 parameters = self._parameters(context) | {
                     "group": group,
@@ -157,10 +134,7 @@ class LightGroups(BufferSet):
                 }
                 self._taken.clear()
                 if context.gathers:
-                    found = {
-                        "GatheringVertices": final_gather.vertices.buffer,
-                        "FoundRadiances": self._found.buffer,
-                    }
+                    found = {**final_gather.blocks, "FoundRadiances": self._found.buffer}
                     self._programs["found"].run(band.pixel_count, {**light, **found}, parameters)
                     final_gather.share_found(self._found.buffer, self._taken.buffer, band, iteration, radii)
                 self._programs["accumulate"].run(

@@ -9,7 +9,7 @@ import enum
 
 import moderngl
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ComputeProgram, ProgramLibrary
@@ -18,6 +18,7 @@ from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
 from ..common.iteration import Iteration
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import LightSum, SplatSums
@@ -62,13 +63,14 @@ def _caustic_pixels(sizes: StageSizes) -> int:
     return band_pixels(sizes) if sizes.has_caustics else 0
 
 
-class LightPasses(BufferSet):
+class LightPasses(Stage):
     """Adds to the film's passes what shadow rays, gathering rays and photons add to a band's radiance. Where none of
     these passes is wanted, there are neither programs nor buffers."""
 
+    memory_group = "passes"
     remedy = "lower the resolution"
-    _found_direct = StorageBuffer("found direct light", "vec4", _scattered_pixels)
-    _found_caustics = StorageBuffer("found caustics", "vec4", _caustic_pixels)
+    _found_direct = StorageBuffer("found direct light", "vec4", _scattered_pixels, block="FoundDirect")
+    _found_caustics = StorageBuffer("found caustics", "vec4", _caustic_pixels, block="FoundCaustics")
     _taken = StorageBuffer("gathered light of passes", "vec4", split_pixels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -100,14 +102,7 @@ class LightPasses(BufferSet):
         with context.timers.stage("light passes"):
             direct_light.living_rays.run(
                 self._programs["direct"],
-                {
-                    "Visibility": direct_light.visibility.buffer,
-                    "Contributions": direct_light.contributions.buffer,
-                    "LightSplits": direct_light.splits.buffer,
-                    "Importons": importons.importons.buffer,
-                    "FoundCaustics": self._found_caustics.buffer,
-                    **film.pass_blocks(band),
-                },
+                {**importons.blocks, **direct_light.blocks, **self.blocks, **film.pass_blocks(band)},
                 self._parameters(film, band, iteration, segment),
             )
 
@@ -127,31 +122,17 @@ class LightPasses(BufferSet):
             return
         with context.timers.stage("light passes"):
             parameters = self._parameters(film, band, iteration) | {"quantum": sums.quantum}
-            self._programs["photons"].run(
-                band.pixel_count, {"LightSums": sums.light_sums, **film.pass_blocks(band)}, parameters
-            )
+            self._programs["photons"].run(band.pixel_count, {**sums.blocks, **film.pass_blocks(band)}, parameters)
             if not context.gathers:
                 return
-            vertices = {
-                "GatheringVertices": final_gather.vertices.buffer,
-                "Importons": importons.importons.buffer,
-            }
-            self._programs["found"].run(
-                band.pixel_count,
-                {
-                    "LightSums": sums.light_sums,
-                    "FoundDirect": self._found_direct.buffer,
-                    "FoundCaustics": self._found_caustics.buffer,
-                    **vertices,
-                },
-                parameters,
-            )
+            blocks = {**importons.blocks, **final_gather.blocks, **sums.blocks, **self.blocks}
+            self._programs["found"].run(band.pixel_count, blocks, parameters)
             for part, found in self._parts(final_gather).items():
                 self._taken.clear()
                 final_gather.share_found(found, self._taken.buffer, band, iteration, radii)
                 self._programs["gathered"].run(
                     band.pixel_count,
-                    {"Radiances": self._taken.buffer, **vertices, **film.pass_blocks(band)},
+                    {**blocks, **film.pass_blocks(band), "Radiances": self._taken.buffer},
                     parameters | {"part": int(part)},
                 )
 

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The media that paths begin in: around the camera and the lights."""
 
-import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 from ..surfaces.geometry import finite_bounds, placed_boxes
@@ -30,15 +30,16 @@ _MOST_BOXES = 32
 """Boxes that points are looked for in; what is more lies in the last together."""
 
 
-class Media(BufferSet):
+class Media(Stage):
     """Paths begin in the media that surround the camera or their light (shaders/media/crossings.glsl).
 
     Where no material has a volume there are neither programs nor buffers, and nothing is done.
     """
 
+    memory_group = "media"
     remedy = "use fewer objects with volumes"
-    _of_sources = StorageBuffer("media of lights and the camera", "uint")
-    _boxes = StorageBuffer("boxes of media", MEDIUM_BOX)
+    _of_sources = StorageBuffer("media of lights and the camera", "uint", block="MediaOfSources")
+    _boxes = StorageBuffer("boxes of media", MEDIUM_BOX, block="MediumBoxes")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -50,14 +51,12 @@ class Media(BufferSet):
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
         if self._is_used(context, iteration):
-            lights = {"Lights": context.lights.table_buffer}
-            self._enter(context, photons.living, photons.path_blocks | lights, "media/enter_photons.comp")
+            self._enter(context, photons.living, photons.blocks, "media/enter_photons.comp")
 
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
         if self._is_used(context, iteration):
-            blocks = importons.path_blocks | {"Hits": importons.hits.buffer}
-            self._enter(context, importons.living, blocks, "media/enter_camera_paths.comp")
+            self._enter(context, importons.living, importons.blocks, "media/enter_camera_paths.comp")
 
     def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
         """Find where media are, and what is in them, for a new scene; true where there are any."""
@@ -78,25 +77,12 @@ class Media(BufferSet):
         lights = len(context.lights.table)
         self._of_sources.require_items(lights + 1)
         program = self._library.compute("media/find.comp", context.acceleration.traversal_defines)
-        buffers = self._buffers(context) | {"Lights": context.lights.table_buffer}
-        program.run(lights + 1, {name: buffers[name] for name in program.blocks}, self._parameters(context))
+        program.run(lights + 1, {**context.blocks, **self.blocks}, self._parameters(context))
 
-    def _enter(
-        self, context: StageContext, living: LivingPaths, buffers: dict[str, moderngl.Buffer], kernel: str
-    ) -> None:
+    def _enter(self, context: StageContext, living: LivingPaths, blocks: dict[str, Bindable], kernel: str) -> None:
         program = self._library.compute(kernel, context.acceleration.traversal_defines)
-        buffers = self._buffers(context) | buffers
         parameters = {**self._parameters(context), "has_camera": not self._has_texels}
-        living.run(program, {name: buffers[name] for name in program.blocks - {"LivingPaths"}}, parameters)
-
-    def _buffers(self, context: StageContext) -> dict[str, moderngl.Buffer]:
-        return {
-            **context.acceleration.traversal_buffers,
-            "Attributes": context.geometry.attributes.buffer,
-            "Materials": context.materials.buffers["Materials"],
-            "MediaOfSources": self._of_sources.buffer,
-            "MediumBoxes": self._boxes.buffer,
-        }
+        living.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))

@@ -44,8 +44,8 @@ class MotionVectors(BufferSet):
 
     remedy = "switch off the pass Vector"
     _vectors = FilmBuffer("motion vectors", "vec4", _is_wanted)
-    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, texel_bytes=16)
-    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, texel_bytes=16)
+    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, texel_bytes=16, block="TrianglesBefore")
+    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, texel_bytes=16, block="TrianglesAfter")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -60,7 +60,6 @@ class MotionVectors(BufferSet):
     def add(
         self,
         context: StageContext,
-        camera_view: moderngl.Buffer,
         importons: Importons,
         pass_counts: moderngl.Buffer,
         band: Band,
@@ -68,7 +67,7 @@ class MotionVectors(BufferSet):
         segment: int,
     ) -> None:
         """Add the first surfaces that the camera paths of a band have found in a segment, before passes.comp counts
-        them in ``pass_counts``; ``camera_view``: CAMERA_VIEW of the band."""
+        them in ``pass_counts``."""
         if self._program is None:
             return
         self._follow(context)
@@ -81,14 +80,11 @@ class MotionVectors(BufferSet):
         importons.living.run(
             self._program,
             {
-                **importons.path_blocks,
-                "Hits": importons.hits.buffer,
-                "Triangles": context.geometry.triangles.buffer,
-                "TrianglesBefore": self._before.buffer,
-                "TrianglesAfter": self._after.buffer,
+                **context.blocks,
+                **importons.blocks,
+                **self.blocks,
                 "PassCounts": pass_counts,
                 "MotionVectors": self._vectors.of(band),
-                "Camera": camera_view,
             },
             {
                 **{f"world_to_camera{when}": np.linalg.inv(seen.matrix) for when, seen in cameras.items()},

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
@@ -22,6 +22,7 @@ from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
 from ..common.film_buffers import BANDS_TOGETHER, FilmBuffer, FilmParts
 from ..common.iteration import Iteration
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
@@ -74,12 +75,13 @@ def _block_count(sizes: StageSizes) -> int:
     return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK) if sizes.measures_noise else 0
 
 
-class NoiseEstimate(BufferSet):
+class NoiseEstimate(Stage):
     """The mean of half of the iterations, 12 bytes a pixel; nothing where the picture does not end with its noise."""
 
+    memory_group = "passes"
     remedy = "lower the resolution"
     _half = FilmBuffer("half of the film", "float", _half_values, together=True)
-    _noises = StorageBuffer("noise of blocks", "float", _block_count)
+    _noises = StorageBuffer("noise of blocks", "float", _block_count, block="Noises")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -97,7 +99,7 @@ class NoiseEstimate(BufferSet):
         with context.timers.stage("noise"):
             self._add.run(
                 band.pixel_count,
-                {"Radiances": radiances.buffer, "SplatSums": sums.buffer, "HalfMeans": self._half.of(band)},
+                {**sums.blocks, "Radiances": radiances.buffer, "HalfMeans": self._half.of(band)},
                 {
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
@@ -122,7 +124,7 @@ class NoiseEstimate(BufferSet):
                 blocks = self._columns * math.ceil(rows / BLOCK)
                 program.run(
                     blocks,
-                    {"Film": part.buffer, "HalfMeans": half.buffer, "Noises": self._noises.buffer},
+                    {**self.blocks, "Film": part.buffer, "HalfMeans": half.buffer},
                     {
                         "count": blocks,
                         "width": self._width,

@@ -17,7 +17,7 @@ class PhotonGroups(BufferSet):
     """A number for each photon that leaves a light; without light groups neither a program nor a buffer."""
 
     remedy = "lower the photons per iteration"
-    groups = StorageBuffer("light groups of photons", "uint", grouped_photons)
+    groups = StorageBuffer("light groups of photons", "uint", grouped_photons, block="PhotonGroups")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -30,12 +30,6 @@ class PhotonGroups(BufferSet):
         lights = context.lights
         self._find.run(
             photons,
-            {
-                "Lights": lights.table_buffer,
-                "Rays": rays,
-                "PhotonGroups": self.groups.buffer,
-                "LightGroupTable": lights.group_table.buffer,
-                "Attributes": context.geometry.attributes.buffer,
-            },
+            {**context.blocks, **self.blocks, "Rays": rays},
             {"count": photons, "light_count": len(lights.table)},
         )

@@ -19,7 +19,7 @@ class PhotonLinks(BufferSet):
     nor a buffer."""
 
     remedy = "lower the photons per iteration"
-    _links = StorageBuffer("light links of photons", "uint", linked_photons)
+    _links = StorageBuffer("light links of photons", "uint", linked_photons, block="PhotonLinks")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -33,12 +33,7 @@ class PhotonLinks(BufferSet):
         lights = context.lights
         self._find.run(
             photons,
-            {
-                "Lights": lights.table_buffer,
-                "Rays": rays,
-                "PhotonLinks": self._links.buffer,
-                "Triangles": context.geometry.triangles.buffer,
-            },
+            {**context.blocks, **self.blocks, "Rays": rays},
             {"count": photons, "light_count": len(lights.table)},
         )
 
@@ -50,11 +45,5 @@ class PhotonLinks(BufferSet):
             return
         living.run(
             self._link,
-            {
-                "Closures": closures,
-                "PhotonPaths": paths,
-                "PhotonLinks": self._links.buffer,
-                "LightLinks": context.lights.links.buffer,
-                "Triangles": context.geometry.triangles.buffer,
-            },
+            {**context.blocks, **self.blocks, "Closures": closures, "PhotonPaths": paths},
         )

@@ -5,13 +5,14 @@ import math
 
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
 from ..common.iteration import Iteration
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import SplatSums
@@ -44,11 +45,12 @@ def _samples(sizes: StageSizes) -> int:
     return math.ceil(sizes.width / step) * math.ceil(sizes.bands[0].rows / step)
 
 
-class PhotonNoise(BufferSet):
+class PhotonNoise(Stage):
     """Reads samples of bands, and counts the vertices of camera paths, in iterations that weigh noise."""
 
+    memory_group = "passes"
     remedy = "lower the resolution"
-    _samples = StorageBuffer("samples of noise", "vec4", _samples)
+    _samples = StorageBuffer("samples of noise", "vec4", _samples, block="NoiseSamples")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -96,20 +98,14 @@ class PhotonNoise(BufferSet):
         with context.timers.stage("learning"):
             self._split.run(
                 band.pixel_count,
-                {
-                    "Radiances": importons.radiances.buffer,
-                    "SplatSums": sums.buffer,
-                    "FoundRadiances": gather.radiances.buffer,
-                    "PhotonCounts": sums.photon_counts,
-                    "NoiseSamples": self._samples.buffer,
-                },
+                {**importons.blocks, **sums.blocks, **gather.blocks, **self.blocks},
                 {**parameters, "count": band.pixel_count},
             )
             if context.gathers:
                 gather.share_found(gather.radiances.buffer, importons.radiances.buffer, band, iteration, radii)
             self._join.run(
                 rows * columns,
-                {"Radiances": importons.radiances.buffer, "NoiseSamples": self._samples.buffer},
+                {**importons.blocks, **self.blocks},
                 {**parameters, "count": rows * columns},
             )
             found = self._samples.read(np.float32, 4 * rows * columns).reshape(rows, columns, 4)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """DirectPhotonHits and TracePhotons: photons from the lights through the scene."""
 
-import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
+from ...gl.buffer_sets import Part, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
@@ -26,6 +25,7 @@ from ..common.records import (
     RAY,
     PhotonFlag,
 )
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
 from ..density_estimation.stored_photons import DirectPhotons, PhotonList, StoredPhotons
@@ -56,22 +56,25 @@ def _flux_groups(sizes: StageSizes) -> int:
     return -(-sizes.photons // FLUX_GROUP)
 
 
-class Photons(BufferSet):
+class Photons(Stage):
     """The photons of one iteration: those of a segment follow those of the segments before, one for each path that
     lives, so that they take as much memory as there are; ``photon_origins`` tells of each path where it began."""
 
+    memory_group = "photon paths"
     remedy = "lower the photons per iteration or the photon path length"
-    photons = StorageBuffer("photons", PHOTON, photon_slots, texel_bytes=4)
-    _range = StorageBuffer("range of photons", "uint", 2)
-    photon_origins = StorageBuffer("photon origins", PHOTON_ORIGIN, photon_paths)
-    _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths)
-    _rays = StorageBuffer("photon rays", RAY, photon_paths)
-    _hits = StorageBuffer("photon hits", HIT, photon_paths)
-    _closures = StorageBuffer("photon closures", CLOSURE, photon_paths, texel_bytes=4)
-    _adjoint_queries = StorageBuffer("adjoint queries", ADJOINT_QUERY, photon_paths)
-    _differentials = StorageBuffer("photon differentials", PHOTON_DIFFERENTIAL, photon_paths)
-    _emitted = StorageBuffer("emitted photons", PHOTON_PATH, photon_paths)
-    _sums = StorageBuffer("flux sums", FLUX_SUMS, _flux_groups)
+    photons = StorageBuffer("photons", PHOTON, photon_slots, texel_bytes=4, block="Photons")
+    _range = StorageBuffer("range of photons", "uint", 2, block="PhotonRange")
+    photon_origins = StorageBuffer("photon origins", PHOTON_ORIGIN, photon_paths, block="PhotonOrigins")
+    _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths, block="PhotonPaths")
+    _rays = StorageBuffer("photon rays", RAY, photon_paths, block="Rays")
+    _hits = StorageBuffer("photon hits", HIT, photon_paths, block="Hits")
+    _closures = StorageBuffer("photon closures", CLOSURE, photon_paths, texel_bytes=4, block="Closures")
+    _adjoint_queries = StorageBuffer("adjoint queries", ADJOINT_QUERY, photon_paths, block="AdjointQueries")
+    _differentials = StorageBuffer(
+        "photon differentials", PHOTON_DIFFERENTIAL, photon_paths, block="PhotonDifferentials"
+    )
+    _emitted = StorageBuffer("emitted photons", PHOTON_PATH, photon_paths, block="Emitted")
+    _sums = StorageBuffer("flux sums", FLUX_SUMS, _flux_groups, block="Sums")
     _living = PathList("living photon paths", photon_paths, to_keep=True)
     first_hits = Part(FirstHits)
     _groups = Part(PhotonGroups)
@@ -94,36 +97,13 @@ class Photons(BufferSet):
         """The list of the paths that go on."""
         return self._living
 
-    @property
-    def path_blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of programs that change where or how paths begin."""
-        return {"Rays": self._rays.buffer, "PhotonPaths": self._paths.buffer}
-
-    @property
-    def _blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of the programs that send photons on."""
-        return {
-            "Closures": self._closures.buffer,
-            "Rays": self._rays.buffer,
-            "PhotonPaths": self._paths.buffer,
-            "Photons": self.photons.buffer,
-            "AdjointQueries": self._adjoint_queries.buffer,
-            "PhotonRange": self._range.buffer,
-        }
-
-    @property
-    def stored_blocks(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of programs that go through all photons of the iteration."""
-        return {"Photons": self.photons.buffer, "PhotonRange": self._range.buffer}
-
     def emit(self, context: StageContext, iteration: Iteration) -> None:
         """DirectPhotonHits: the iteration's photons leave the lights and find their first hits."""
         self.photon_count, self.slots = iteration.photon_count, 0
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
-            directions, differentials = self.photon_origins.buffer, self._differentials.buffer
-            self._emission.emit(context.lights, rays, paths, directions, differentials, self.photon_count, iteration)
+            self._emission.emit(context, self.blocks, self.photon_count, iteration)
             self._groups.find(context, rays, self.photon_count)
             self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
@@ -132,9 +112,9 @@ class Photons(BufferSet):
         with context.timers.stage("first photon hits"):
             self.first_hits.find(context, rays, hits, self._living)
             if context.lights.has_falloff:
-                self._emission.apply_falloff(context.lights, rays, hits, paths, self.photon_count, iteration)
+                self._emission.apply_falloff(context, self.blocks, self.photon_count, iteration)
             if context.lights.are_cut:
-                self._emission.cut_soft_lights(context, rays, hits, paths, self._living)
+                self._emission.cut_soft_lights(context, self.blocks, self._living)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
     def trace(self, context: StageContext, segment: int) -> bool:
@@ -169,22 +149,10 @@ class Photons(BufferSet):
         with context.timers.stage("photon scattering"):
             self._begin_segment(segment)
             if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
-                blocks = {
-                    "Rays": self._rays.buffer,
-                    "Hits": self._hits.buffer,
-                    "PhotonPaths": self._paths.buffer,
-                    "PhotonOrigins": self.photon_origins.buffer,
-                }
-                self._emission.leave_to_shadow_rays(context.lights, blocks, self._living, iteration)
+                self._emission.leave_to_shadow_rays(context, self.blocks, self._living, iteration)
             self._living.run(
                 self._scatter,
-                {
-                    **self._blocks,
-                    "PhotonDifferentials": self._differentials.buffer,
-                    "Triangles": context.geometry.triangles.buffer,
-                    "Attributes": context.geometry.attributes.buffer,
-                    "Materials": context.materials.buffers["Materials"],
-                },
+                {**context.blocks, **self.blocks},
                 {
                     "segment": segment,
                     "photon_bounces": context.settings.photon_bounces,
@@ -198,19 +166,16 @@ class Photons(BufferSet):
                 },
             )
         if has_adjoint_queries:
-            blocks = self._blocks | {"Hits": self._hits.buffer}
-            subsurface.walk_photons(context, self._living, blocks, iteration, segment)
+            subsurface.walk_photons(context, self._living, self.blocks, iteration, segment)
             self.resolve(context, iteration, segment, has_adjoint_queries=True)
             with context.timers.stage("photon scattering"):
-                self._living.run(self._adjoint, self._blocks)
+                self._living.run(self._adjoint, self.blocks)
 
     def _begin_segment(self, segment: int) -> None:
         """Make room for a photon of each living path behind those of the segments before."""
         self.slots += self._living.bound(segment)
         self.photons.extend_items(self.slots)
-        self._begin.run(
-            1, {"LivingPaths": self._living.buffer, "PhotonRange": self._range.buffer}, {"segment": segment}
-        )
+        self._begin.run(1, {**self.blocks, "LivingPaths": self._living.buffer}, {"segment": segment})
 
     def list_stored(self, context: StageContext, listed: PhotonList, iteration: Iteration) -> PhotonList:
         """List the photons that importons may take. Where shadow rays find direct light, direct ones would count it
@@ -219,8 +184,7 @@ class Photons(BufferSet):
         if context.settings.direct_light is DirectLight.PHOTONS:
             takes_direct = DirectPhotons.ALL
         with context.timers.stage("photon list"):
-            directions = self.photon_origins.buffer
-            listed.collect(self.stored_blocks, directions, self.slots, takes_direct)
+            listed.collect(self.blocks, self.slots, takes_direct)
         return listed
 
     def stored(self, context: StageContext, iteration: Iteration, listed: PhotonList, radii: Radii) -> StoredPhotons:
@@ -252,7 +216,7 @@ class Photons(BufferSet):
         groups = -(-self.photon_count // FLUX_GROUP)
         self._balance.run(
             self.photon_count,
-            {"Emitted": self._emitted.buffer, "PhotonPaths": self._paths.buffer, "Sums": self._sums.buffer},
+            self.blocks,
             {"photon_count": self.photon_count},
         )
         sums = self._sums.read(FLUX_SUMS.dtype, groups)

@@ -39,7 +39,7 @@ class PrimaryRays(CameraHits):
             self.camera.write(view)
             self._rays.run(
                 band.pixel_count,
-                {"Camera": self.camera.buffer, "Rays": importons.rays.buffer, "CameraPaths": importons.paths.buffer},
+                {**importons.blocks, **self.blocks},
                 # The iterations' points start with the first of the set.
                 {
                     "first_pixel": band.first_pixel,

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects of which the camera sees the shadows only."""
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records import RAY
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
 from ..lights.lights import LIGHT_PARAMETERS
@@ -20,17 +21,20 @@ def _catching_pixels(sizes: StageSizes) -> int:
     return band_pixels(sizes) if sizes.has_catchers else 0
 
 
-class ShadowCatcher(BufferSet):
+class ShadowCatcher(Stage):
     """One shadow ray from each catcher that a camera path meets, to a light chosen by what it would give without
     shadows: ``lit`` is then 1 as often as the share of the light that arrives. Light that other surfaces send is left
     out. Without catchers nothing is run."""
 
+    memory_group = "shadow catcher"
     remedy = "lower the resolution"
-    _rays = StorageBuffer("rays from shadow catchers", RAY, _catching_pixels)
-    _links = StorageBuffer("links of shadow catchers", "vec4", _catching_pixels)
+    _rays = StorageBuffer("rays from shadow catchers", RAY, _catching_pixels, block="ShadowRays")
+    _links = StorageBuffer("links of shadow catchers", "vec4", _catching_pixels, block="Contributions")
     """Contributions without light."""
-    _triangles = StorageBuffer("triangles of lights of shadow catchers", "uint", _catching_pixels)
-    lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels)
+    _triangles = StorageBuffer(
+        "triangles of lights of shadow catchers", "uint", _catching_pixels, block="LightTriangles"
+    )
+    lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels, block="LitCatchers")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -43,15 +47,7 @@ class ShadowCatcher(BufferSet):
         with context.timers.stage("shadow catcher"):
             importons.living.run(
                 self._program,
-                {
-                    **context.lights.buffers,
-                    "Closures": importons.closures.buffer,
-                    "Rays": importons.rays.buffer,
-                    "ShadowRays": self._rays.buffer,
-                    "Contributions": self._links.buffer,
-                    "LightTriangles": self._triangles.buffer,
-                    "LightLinks": context.lights.links.buffer,
-                },
+                {**context.blocks, **importons.blocks, **self.blocks},
                 {**context.lights.parameters(iteration), "segment": segment, "first_pixel": band.first_pixel},
             )
             linking = context.lights.linking_blocks(self._links.buffer)

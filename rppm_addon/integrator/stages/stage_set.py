@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The stages of an iteration, with buffers for a resolution and a number of photons."""
 
-from collections.abc import Mapping
-
-import moderngl
+from collections.abc import Iterable
 
 from ...gl.buffer_sets import BufferSet, Part, sum_by_name
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits
 from ..common.band import Band
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
 from ..density_estimation.caustic_radii import CausticRadii
@@ -33,19 +32,6 @@ from .primary_rays import PrimaryRays
 from .shadow_catcher import ShadowCatcher
 from .subsurface import Subsurface
 from .texel_hits import TexelHits
-
-GROUPS: Mapping[str, tuple[type[BufferSet], ...]] = {
-    "photon paths": (Photons,),
-    "camera paths": (CameraHits, Importons),
-    "direct light": (DirectLight,),
-    "final gather": (FinalGather,),
-    "shadow catcher": (ShadowCatcher,),
-    "subsurface": (Subsurface,),
-    "media": (Media,),
-    "density estimation": (DensityEstimator,),
-    "passes": (Film, LightPasses, LightGroups, CausticRadii, NoiseEstimate, PhotonNoise),
-}
-"""How memory is reported: stages by group."""
 
 
 def _camera_hits(sizes: StageSizes, is_software: bool) -> type[CameraHits]:
@@ -104,32 +90,25 @@ class StageSet(BufferSet):
             if context.gathers:
                 self.final_gather.clear()
 
-    def scatter_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of other stages that importons read and write as they scatter."""
-        return {
-            "Camera": self.camera_hits.camera.buffer,
-            "GatheringVertices": self.final_gather.vertices.buffer,
-            "LitCatchers": self.shadow_catcher.lit.buffer,
-            "RadiusFactors": self.caustic_radii.factors(band),
-        }
-
-    def direct_light_blocks(self, band: Band) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of other stages that direct light reads and adds to."""
-        return {
-            "Camera": self.camera_hits.camera.buffer,
-            "RadiusFactors": self.caustic_radii.factors(band),
-            "FoundRadiances": self.final_gather.radiances.buffer,
-        }
+    def blocks_of(self, band: Band) -> dict[str, Bindable]:
+        """Storage blocks of the stages that are declared once (BufferSet.blocks), with those of a band."""
+        return {**self.blocks, **self.camera_hits.blocks, "RadiusFactors": self.caustic_radii.factors(band)}
 
     @property
     def memory_groups(self) -> dict[str, dict[str, int]]:
         """Bytes on the device by group and buffer."""
-        return {
-            group: sum_by_name(stage.memory_bytes for stage, _ in self._owned if isinstance(stage, kinds))
-            for group, kinds in GROUPS.items()
-        }
+        stages = [stage for stage, _ in self._owned if isinstance(stage, Stage)]
+        return _by_group((stage.memory_group, stage.memory_bytes) for stage in stages)
 
 
 def expected_groups(sizes: StageSizes) -> dict[str, dict[str, int]]:
     """StageSet.memory_groups as far as it follows from the sizes, before anything is allocated."""
-    return {group: sum_by_name(kind.expected_bytes(sizes) for kind in kinds) for group, kinds in GROUPS.items()}
+    kinds = [*StageSet.part_kinds(), CameraHits]
+    return _by_group((kind.memory_group, kind.expected_bytes(sizes)) for kind in kinds if issubclass(kind, Stage))
+
+
+def _by_group(parts: Iterable[tuple[str, dict[str, int]]]) -> dict[str, dict[str, int]]:
+    groups: dict[str, list[dict[str, int]]] = {}
+    for group, sizes in parts:
+        groups.setdefault(group, []).append(sizes)
+    return {group: sum_by_name(sizes) for group, sizes in groups.items()}

@@ -3,16 +3,15 @@
 
 from collections.abc import Mapping
 
-import moderngl
-
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths, PathList
 from ..common.records import HIT, RAY, SUBSURFACE_WALK, RandomStage
+from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, subsurface_walks
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
@@ -34,16 +33,17 @@ _LAST_STEPS = (4, 8, 16, 32, 64, 96, 128, 160, 192, 224, 256)
 Cycles. Drivers on the processor end the loops of a thread after 65535 rounds."""
 
 
-class Subsurface(BufferSet):
+class Subsurface(Stage):
     """Paths that go below a surface walk until they come out of the same object, and are then on a diffuse surface.
 
     Where no material has subsurface scattering there are neither programs nor buffers, and nothing is done.
     """
 
+    memory_group = "subsurface"
     remedy = "lower the resolution or the photons per iteration"
-    _walks = StorageBuffer("subsurface walks", SUBSURFACE_WALK, subsurface_walks)
-    _rays = StorageBuffer("subsurface rays", RAY, subsurface_walks)
-    _hits = StorageBuffer("subsurface hits", HIT, subsurface_walks)
+    _walks = StorageBuffer("subsurface walks", SUBSURFACE_WALK, subsurface_walks, block="SubsurfaceWalks")
+    _rays = StorageBuffer("subsurface rays", RAY, subsurface_walks, block="WalkRays")
+    _hits = StorageBuffer("subsurface hits", HIT, subsurface_walks, block="ExitHits")
     _entered = PathList("paths below surfaces")
     _walking = PathList("walking paths", to_keep=True)
 
@@ -62,7 +62,7 @@ class Subsurface(BufferSet):
         if not self.is_used:
             return
         with context.timers.stage("camera subsurface"):
-            blocks = importons.path_blocks | {"ExitClosures": importons.exit_closures.buffer}
+            blocks = importons.blocks
             self._walk(
                 context, importons.living, blocks, ("enter", "leave"), iteration, segment, RandomStage.SUBSURFACE, band
             )
@@ -71,7 +71,7 @@ class Subsurface(BufferSet):
         self,
         context: StageContext,
         living: LivingPaths,
-        blocks: Mapping[str, moderngl.Buffer],
+        blocks: Mapping[str, Bindable],
         iteration: Iteration,
         segment: int,
     ) -> None:
@@ -89,22 +89,14 @@ class Subsurface(BufferSet):
         self,
         context: StageContext,
         living: LivingPaths,
-        blocks: Mapping[str, moderngl.Buffer],
+        blocks: Mapping[str, Bindable],
         programs: tuple[str, str],
         iteration: Iteration,
         segment: int,
         stage: RandomStage,
         band: Band | None = None,
     ) -> None:
-        buffers = {
-            **blocks,
-            **context.acceleration.traversal_buffers,
-            "Triangles": context.geometry.triangles.buffer,
-            "Attributes": context.geometry.attributes.buffer,
-            "SubsurfaceWalks": self._walks.buffer,
-            "WalkRays": self._rays.buffer,
-            "ExitHits": self._hits.buffer,
-        }
+        blocks = {**context.blocks, **self.blocks, **blocks}
         parameters = {
             "seed": iteration.seed,
             "iteration": iteration.number,
@@ -114,10 +106,7 @@ class Subsurface(BufferSet):
         enter, leave = (self._programs[name] for name in programs)
         walk = self._library.compute("subsurface/walk.comp", context.acceleration.traversal_defines)
 
-        def of(program: ComputeProgram) -> dict[str, moderngl.Buffer]:
-            return {name: buffers[name] for name in program.blocks - {"LivingPaths"}}
-
-        living.run(enter, of(enter), parameters)
+        living.run(enter, blocks, parameters)
         self._entered.take(living, self._rays.buffer)
         walking = self._walking
         walking.require(living.most, to_keep=True)
@@ -127,7 +116,7 @@ class Subsurface(BufferSet):
             if walking.known_empty:
                 break
             steps = {"stage": stage, "first_step": first, "end_step": end}
-            walking.run(walk, of(walk), parameters | steps)
+            walking.run(walk, blocks, parameters | steps)
             walking.keep(self._rays.buffer)
             first = end
-        self._entered.run(leave, of(leave), parameters)
+        self._entered.run(leave, blocks, parameters)

@@ -36,7 +36,7 @@ Record(
 class TexelHits(CameraHits):
     """Stands in for the GBuffer where the first hits of camera paths are given (scene.Texels)."""
 
-    _texels = StorageBuffer("baked texels", TEXEL, band_pixels)
+    _texels = StorageBuffer("baked texels", TEXEL, band_pixels, block="BakedTexels")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -53,7 +53,7 @@ class TexelHits(CameraHits):
 
         Raises SceneError when their object has no triangles.
         """
-        camera, geometry = context.scene.camera, context.geometry
+        camera = context.scene.camera
         texels = camera.texels
         assert texels is not None
         placement = _placement_of(context, texels)
@@ -63,14 +63,7 @@ class TexelHits(CameraHits):
             self._texels.write(texel_records(camera, texels, placement, view))
             self._program.run(
                 band.pixel_count,
-                {
-                    "BakedTexels": self._texels.buffer,
-                    "Triangles": geometry.triangles.buffer,
-                    "Attributes": geometry.attributes.buffer,
-                    "Rays": importons.rays.buffer,
-                    "Hits": importons.hits.buffer,
-                    "CameraPaths": importons.paths.buffer,
-                },
+                {**context.blocks, **importons.blocks, **self.blocks},
                 {
                     "viewer": texels.viewer or (0.0, 0.0, 0.0, 0.0),
                     "count": band.pixel_count,

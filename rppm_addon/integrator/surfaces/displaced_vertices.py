@@ -107,15 +107,13 @@ class DisplacedVertices(BufferSet):
             scene.warn(f'Material "{material}": the driver does not compile its displacement ({reason}); it has none')
             return None
 
-    def _run(
-        self, program: ComputeProgram, records: np.ndarray, scene: Scene, materials: MaterialTables
-    ) -> np.ndarray:
+    def _run(self, program: ComputeProgram, records: np.ndarray, scene: Scene, materials: MaterialTables) -> np.ndarray:
         camera = scene.camera
         self._vertices.upload(records)
         self._offsets.require_items(len(records))
         buffers = {
             **materials.buffers,
-            **self._surface_attributes.buffers,
+            **self._surface_attributes.blocks,
             "Triangles": self._geometry.triangles.buffer,
             "Attributes": self._geometry.attributes.buffer,
             "DisplacedVertices": self._vertices.buffer,

@@ -150,8 +150,8 @@ class Geometry(BufferSet):
     """
 
     remedy = "lower the subdivision or the children of particles (Simplify does so for all), or decimate meshes"
-    triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16)
-    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16)
+    triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16, block="Triangles")
+    attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16, block="Attributes")
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)

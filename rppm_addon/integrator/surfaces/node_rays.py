@@ -15,7 +15,7 @@ import moderngl
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...materials.compiler import MOST_NODE_RAYS, NodeRayCounts
@@ -94,22 +94,23 @@ class NodeRays(BufferSet):
     def trace(
         self,
         program: ComputeProgram,
+        order: moderngl.Buffer,
         arguments: int,
-        buffers: Mapping[str, moderngl.Buffer],
+        buffers: Mapping[str, Bindable],
         counts: NodeRayCounts,
         parameters: Mapping[str, object],
     ) -> None:
         """Answer what the nodes of a program ask at a level.
 
-        program: ``program``'s; arguments: byte of HitOrder where the groups of the dispatch are; buffers: HitOrder,
+        program: ``program``'s; order: HitOrder; arguments: its byte where the groups of the dispatch are; buffers:
         NodeRays, Rays, Hits, Attributes and those of the traversal among others; counts: of the program that asks;
         parameters: the others of NodeRaysParameters.
         """
         of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}
         for first in range(0, counts.samples, _SAMPLES_AT_ONCE):
             program.run_indirect(
-                buffers["HitOrder"],
+                order,
                 arguments,
-                {name: buffers[name] for name in program.blocks},
+                {**buffers, "HitOrder": order},
                 {**of_all, "first_sample": first, "sample_count": _SAMPLES_AT_ONCE},
             )

@@ -10,7 +10,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
 from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
@@ -108,13 +108,8 @@ class Resolve(BufferSet):
         self._casts_rays = False
         """Whether nodes ask for rays that begin anywhere."""
         self._traversal: AccelerationStructure | None = None
-        self._buffers: dict[str, moderngl.Buffer] = {}
+        self._buffers: dict[str, Bindable] = {}
         self._parameters: dict[str, object] = {}
-
-    @property
-    def shading_instances(self) -> moderngl.Buffer:
-        """SHADING_INSTANCE of each instance."""
-        return self._surface_attributes.buffers["ShadingInstances"]
 
     @property
     def has_terminators(self) -> bool:
@@ -137,9 +132,8 @@ class Resolve(BufferSet):
         self._traversal = None
         self._surface_attributes.build(scene, geometry, materials.attribute_names)
         self._buffers = {
-            "Triangles": geometry.triangles.buffer,
-            "Attributes": geometry.attributes.buffer,
-            **self._surface_attributes.buffers,
+            **geometry.blocks,
+            **self._surface_attributes.blocks,
             **materials.buffers,
         }
 
@@ -252,11 +246,16 @@ class Resolve(BufferSet):
             ordered, of_program = {**buffers, "HitOrder": order}, {**parameters, "program": number}
             if self._ray_counts[number].levels:
                 ordered["NodeRays"] = self._node_rays.require(closures.size // CLOSURE.size * self._ray_stride)
-                of_program |= self._trace_node_rays(program, arguments, ordered, of_program)
-            program.run_indirect(order, arguments, _blocks_of(program, ordered), of_program)
+                of_program |= self._trace_node_rays(program, order, arguments, ordered, of_program)
+            program.run_indirect(order, arguments, ordered, of_program)
 
     def _trace_node_rays(
-        self, program: ComputeProgram, arguments: int, buffers: dict[str, moderngl.Buffer], parameters: dict
+        self,
+        program: ComputeProgram,
+        order: moderngl.Buffer,
+        arguments: int,
+        buffers: dict[str, Bindable],
+        parameters: dict,
     ) -> dict[str, int]:
         """Have the nodes of a program ask and be answered, level by level; returns what parameters then tell it."""
         if self._traversal is None:
@@ -267,9 +266,10 @@ class Resolve(BufferSet):
         traced["segment"] = parameters["segment"] + (_LOOKING_BACK if parameters["has_adjoint_queries"] else 0)
         for level in range(counts.levels):
             told["ray_level"] = level
-            program.run_indirect(buffers["HitOrder"], arguments, _blocks_of(program, buffers), {**parameters, **told})
+            program.run_indirect(order, arguments, buffers, {**parameters, **told})
             self._node_rays.trace(
                 self._node_rays.program(self._traversal, self._casts_rays),
+                order,
                 arguments,
                 {**buffers, **self._traversal.traversal_buffers},
                 counts,
@@ -277,15 +277,11 @@ class Resolve(BufferSet):
             )
         return {**told, "ray_level": counts.levels}
 
-    def _order_by_program(self, buffers: dict[str, moderngl.Buffer], living: LivingPaths) -> moderngl.Buffer:
+    def _order_by_program(self, buffers: dict[str, Bindable], living: LivingPaths) -> moderngl.Buffer:
         self._order.require_items(_RANGE_SIZE * len(self._programs) + living.most)
         self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
         buffers = {**buffers, "HitOrder": self._order.buffer, "LivingPaths": living.buffer}
-        living.run(self._count, _blocks_of(self._count, buffers))
-        self._allocate.run(1, _blocks_of(self._allocate, buffers), {"count": len(self._programs)})
-        living.run(self._order_hits, _blocks_of(self._order_hits, buffers))
+        living.run(self._count, buffers)
+        self._allocate.run(1, buffers, {"count": len(self._programs)})
+        living.run(self._order_hits, buffers)
         return self._order.buffer
-
-
-def _blocks_of(program: ComputeProgram, buffers: dict[str, moderngl.Buffer]) -> dict[str, moderngl.Buffer]:
-    return {name: buffers[name] for name in program.blocks}

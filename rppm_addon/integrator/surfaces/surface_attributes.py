@@ -3,7 +3,6 @@
 
 import operator
 
-import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
@@ -70,8 +69,12 @@ class SurfaceAttributes(BufferSet):
     """The buffers ShadingInstances and AttributeValues: the latter starts with the place and the components of each of
     ``count`` attributes of each instance, then come the values, three corners a triangle."""
 
-    _instances = StorageBuffer("shading instances", SHADING_INSTANCE, remedy="remove instances", texel_bytes=16)
-    _values = StorageBuffer("mesh attributes", "uint", remedy="use fewer attributes in materials", texel_bytes=16)
+    _instances = StorageBuffer(
+        "shading instances", SHADING_INSTANCE, remedy="remove instances", texel_bytes=16, block="ShadingInstances"
+    )
+    _values = StorageBuffer(
+        "mesh attributes", "uint", remedy="use fewer attributes in materials", texel_bytes=16, block="AttributeValues"
+    )
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -80,11 +83,6 @@ class SurfaceAttributes(BufferSet):
         """Whether any instance has an offset of its shadow terminator."""
         self._sources: dict[int, tuple] = {}
         """Of what lies at a place of the values, that from which it was made."""
-
-    @property
-    def buffers(self) -> dict[str, moderngl.Buffer]:
-        """Storage blocks of the programs that resolve hits."""
-        return {"ShadingInstances": self._instances.buffer, "AttributeValues": self._values.buffer}
 
     def build(self, scene: Scene, geometry: Geometry, names: list[str]) -> None:
         """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read.

@@ -46,7 +46,7 @@ def test_disks_shrink_to_what_they_should_hold(context, library, roulette, fract
         shrunk = shrinkage(iteration, 0.7)
         counts = random.poisson(np.linspace(0, 60, pixels)[:, None], (pixels, 6)).astype(np.uint32)
         for rows in sizes.bands:
-            sums.photon_counts.write(counts[rows.first_row : rows.first_row + rows.rows].tobytes())
+            sums.blocks["PhotonCounts"].write(counts[rows.first_row : rows.first_row + rows.rows].tobytes())
             of_iteration = Radii(0.0, 1.0, 1.0, 1.0, most, shrunk)
             radii.narrow(sums, rows, Iteration(iteration, seed=0), of_iteration, fraction, timers)
         taken = counts[:, 1] * (2 if roulette else 1) / shrunk**2 / held

@@ -47,8 +47,8 @@ class Device:
             buffer.upload(array)
         sizes = StageSizes(len(importons), 1, photons=len(photons), segments=1)
         listed = PhotonList(self._context, self._library, sizes)
-        blocks = {"Photons": buffers[0].buffer, "PhotonRange": buffers[3].buffer}
-        listed.collect(blocks, buffers[2].buffer, len(photons), DirectPhotons.ALL)
+        blocks = dict(zip(("Photons", "PhotonOrigins", "PhotonRange"), (b.buffer for b in (buffers[0], *buffers[2:]))))
+        listed.collect(blocks, len(photons), DirectPhotons.ALL)
         sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, 1)
         sums.clear()

@@ -7,9 +7,9 @@ layout(local_size_x = 64) in;
 #include <LightChoicesParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
-layout(std140, binding = 0) uniform Parameters { LightChoicesParameters parameters; };
+uniform Parameters { LightChoicesParameters parameters; };
 #include "lights/light_tree.glsl"
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+writeonly buffer Results { vec4 results[]; };
 
 // What rays that meet the light of a choice tell of its probability; of the environment none do.
 float told_probability(LightChoice choice, LitPoint point) {

@@ -8,9 +8,9 @@ layout(local_size_x = 64) in;
 #include <LightSamplesParameters>
 #include "common/invocation.glsl"
 #include "common/random.glsl"
-layout(std140, binding = 0) uniform Parameters { LightSamplesParameters parameters; };
+uniform Parameters { LightSamplesParameters parameters; };
 #include "lights/lights.glsl"
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+writeonly buffer Results { vec4 results[]; };
 
 void main() {
     uint index = invocation_index();

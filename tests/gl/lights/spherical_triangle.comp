@@ -8,9 +8,9 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 #include "common/spherical_triangle.glsl"
-layout(std140, binding = 0) uniform Parameters { SphericalTriangleParameters parameters; };
-layout(std430, binding = 0) readonly buffer Triangles { vec4 triangles[]; };
-layout(std430, binding = 1) writeonly buffer Results { vec4 results[]; };
+uniform Parameters { SphericalTriangleParameters parameters; };
+readonly buffer Triangles { vec4 triangles[]; };
+writeonly buffer Results { vec4 results[]; };
 
 void main() {
     uint index = invocation_index();

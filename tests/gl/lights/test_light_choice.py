@@ -73,7 +73,7 @@ def run(mapper, library, **parameters) -> np.ndarray:
     unset = {"point": np.zeros(3), "normal": np.zeros(3), "both_sides": 0, "looks_at_lights": 0, "reach": 0.0}
     library.compute(SHADER).run(
         CHOICES,
-        {**emission.tree_buffers, "Results": results},
+        {**emission.blocks, "Results": results},
         {**emission.parameters(Iteration(1, seed=3)), "count": CHOICES, **unset, **parameters},
     )
     table = np.frombuffer(results.read(), np.float32).reshape(CHOICES, 4).copy()

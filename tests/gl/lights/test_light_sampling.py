@@ -169,7 +169,7 @@ def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float =
     results = mapper.context.moderngl.buffer(reserve=48 * count)
     library.compute(str(FOLDER / "light_samples.comp")).run(
         count,
-        {**mapper.device_scene.lights.buffers, "Results": results},
+        {**mapper.device_scene.lights.blocks, "Results": results},
         {
             **mapper.device_scene.lights.parameters(Iteration(1, seed=3)),
             "count": count,

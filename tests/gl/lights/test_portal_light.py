@@ -55,7 +55,7 @@ def portal_samples(mapper, library, point) -> tuple[np.ndarray, np.ndarray]:
     results = mapper.context.moderngl.buffer(reserve=48 * SAMPLES)
     lights = mapper.device_scene.lights
     values = {**lights.parameters(Iteration(1, seed=3)), "count": SAMPLES, "point": point, "emitted": 0.0}
-    blocks = {**lights.buffers, "Results": results}
+    blocks = {**lights.blocks, "Results": results}
     library.compute(str(FOLDER / "portal_samples.comp"), {"PORTALS": 1}).run(SAMPLES, blocks, values)
     table = np.frombuffer(results.read(), np.float32).reshape(SAMPLES, 12).astype(np.float64)
     results.release()

@@ -26,15 +26,20 @@ def test_the_floor_gets_the_sky_through_the_hole(mapper, route):
     judge(f"hole {route.name}", pictures, FLOOR * hole_form_factor(scene)[..., None])
 
 
-CASES = {"gray walls": (GRAY, None), "clouds": (BLACK, uneven_sky(False)), "sun": (BLACK, uneven_sky(True))}
+CASES = {
+    "gray walls": (GRAY, None, 6, 32),
+    "clouds": (BLACK, uneven_sky(False), 6, 32),
+    "sun": (BLACK, uneven_sky(True), 24, 128),
+}
+"""Albedo of the walls, sky, and iterations with photons and with rays alone."""
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_rays_and_photons_find_what_rays_do(mapper, monkeypatch, name):
     """On the floor and on what gathering rays lead to; and a pixel has less noise."""
-    walls, sky = CASES[name]
-    scene, more_rays = room(walls), room(walls, photons=1 << 12, iterations=32)
+    walls, sky, iterations, more = CASES[name]
+    scene, more_rays = room(walls, iterations=iterations), room(walls, photons=1 << 12, iterations=more)
     if sky is not None:
         for each in (scene, more_rays):
             each.images, each.world = [sky], image_world(0)
@@ -52,7 +57,7 @@ def test_rays_and_photons_find_what_rays_do(mapper, monkeypatch, name):
     assert abs(differences.mean()) < 4 * mean_error
     assert (abs(differences) < 4 * errors).all()
     # Of as many iterations.
-    assert pictures.var(axis=0, ddof=1).mean() < by_rays.var(axis=0, ddof=1).mean() * 32 / 6
+    assert pictures.var(axis=0, ddof=1).mean() < by_rays.var(axis=0, ddof=1).mean() * more / iterations
 
 
 @pytest.mark.parametrize(("hole", "shares"), [(HOLE, True), (HALF, False), (0.0, False)])

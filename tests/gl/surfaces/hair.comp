@@ -10,8 +10,8 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/microfacet.glsl"
-layout(std140, binding = 0) uniform Parameters { HairTestParameters parameters; };
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+uniform Parameters { HairTestParameters parameters; };
+writeonly buffer Results { vec4 results[]; };
 
 void main() {
     uint index = invocation_index();

@@ -5,12 +5,12 @@
 layout(local_size_x = 1) in;
 
 #include <RaycastAnswerParameters>
-layout(std140, binding = 0) uniform Parameters { RaycastAnswerParameters parameters; };
+uniform Parameters { RaycastAnswerParameters parameters; };
 struct Surface { vec3 position; };
 vec3 world_position(Surface surface) { return surface.position + parameters.world_origin; }
 #include "materials/node_rays.glsl"
 #include "materials/nodes/raycast.glsl"
-layout(std430, binding = 0) writeonly buffer Results { vec4 results[]; };
+writeonly buffer Results { vec4 results[]; };
 
 void main() {
     float is_hit, self_hit, hit_distance;

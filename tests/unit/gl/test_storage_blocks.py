@@ -49,7 +49,8 @@ def test_names_get_numbers_in_their_order(shader):
     source = expand(
         shader(
             "uniform Parameters { vec4 parameters; };\nuniform sampler2D first;\nuniform sampler2D second;\n"
-            "writeonly buffer Found {\n    uint found[];\n};\n#ifdef ABSENT\nbuffer Dots;\n#else\nbuffer Dots;\n#endif\n"
+            "writeonly buffer Found {\n    uint found[];\n};\n"
+            "#ifdef ABSENT\nbuffer Dots;\n#else\nbuffer Dots;\n#endif\n"
             "restrict readonly buffer Others { uint others[]; };\n"
         )
     )
