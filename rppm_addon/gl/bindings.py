@@ -8,14 +8,14 @@ together, in the order of the declarations.
 import re
 from collections.abc import Callable, Mapping
 
-PARAMETER_BINDING = 0
-"""Binding of the one uniform block that a program may have."""
+UNIFORM_BINDINGS = {"Parameters": 0, "Iteration": 1}
+"""Bindings of the uniform blocks that a program may have, by name: its own, and that of all stages of an iteration."""
 
 BLOCK_LAYOUT = "layout(std430)"
 """The layout of storage blocks until they are numbered."""
 
 _STORAGE_BLOCK = re.compile(r"layout\(std430\)(?P<rest>[\w\s]*?\bbuffer\s+(?P<name>\w+))")
-_PARAMETER_BLOCK = re.compile(r"uniform[^\S\n]+\w+[^\S\n]*\{")
+_UNIFORM_BLOCK = re.compile(r"uniform[^\S\n]+(\w+)[^\S\n]*\{")
 _TEXTURE = re.compile(r"(?P<text>uniform[^\S\n]+sampler\w+[^\S\n]+(?P<name>\w+)[^\S\n]*;)")
 _IMAGE = re.compile(r"layout\((?P<format>\w+)\)(?= restrict readonly uniform uimageBuffer (?P<name>\w+))")
 _NUMBERED_BLOCK = re.compile(r"layout\(std430, binding = (\d+)\)[\w\s]*?\bbuffer\s+(\w+)")
@@ -28,13 +28,13 @@ def number_images(text: str) -> str:
 
 
 def number_bindings(text: str, blocks: Mapping[str, int], textures: Mapping[str, int]) -> str:
-    """A source with a binding for each storage block and its parameter block, and a unit for each texture.
+    """A source with a binding for each storage block and uniform block, and a unit for each texture.
 
     blocks, textures: numbers that another stage of the program has given to names. The source keeps them for these
     names, and gives no other name one of them.
     """
     text = _STORAGE_BLOCK.sub(_numbering(blocks, "layout(std430, binding = {number}){rest}"), text)
-    text = _PARAMETER_BLOCK.sub(lambda match: f"layout(std140, binding = {PARAMETER_BINDING}) {match[0]}", text)
+    text = _UNIFORM_BLOCK.sub(lambda match: f"layout(std140, binding = {UNIFORM_BINDINGS[match[1]]}) {match[0]}", text)
     return _TEXTURE.sub(_numbering(textures, "layout(binding = {number}) {text}"), text)
 
 

@@ -170,11 +170,18 @@ class BufferSet:
 
     remedy: ClassVar[str] = REMEDY
     """What helps where the device has no room for a buffer."""
+    _declared: ClassVar[dict[str, Declared]] = {}
+    """What the class declares by attribute, after what the classes declare that it is made from."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        members = (item for base in reversed(cls.__mro__) for item in vars(base).items())
+        cls._declared = {name: member for name, member in members if isinstance(member, Declared)}
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         """sizes: what the counts follow from. Raises DeviceError when the device has no room."""
         self._owned: list[tuple[Resource, str]] = []
-        for name, declared in _declarations(type(self)).items():
+        for name, declared in self._declared.items():
             vars(self)[name] = self.own(declared.make(context, library, sizes, self.remedy))
 
     def own(self, resource: Owned, name: str = "") -> Owned:
@@ -196,7 +203,7 @@ class BufferSet:
         own: dict[str, Bindable] = {}
         of_parts: dict[str, Bindable] = {}
         ambiguous: set[str] = set()
-        for name, declared in _declarations(type(self)).items():
+        for name, declared in self._declared.items():
             made = getattr(self, name)
             if isinstance(declared, StorageBuffer) and declared.block:
                 own[declared.block] = made.buffer
@@ -214,18 +221,18 @@ class BufferSet:
     @classmethod
     def part_kinds(cls) -> list[type["BufferSet"]]:
         """The classes of its parts."""
-        return [declared.kind for declared in _declarations(cls).values() if isinstance(declared, Part)]
+        return [declared.kind for declared in cls._declared.values() if isinstance(declared, Part)]
 
     @classmethod
     def expected_bytes(cls, sizes: object) -> dict[str, int]:
         """By name, the bytes that follow from the sizes, known before anything is allocated."""
-        return sum_by_name(declared.expected_bytes(sizes) for declared in _declarations(cls).values())
+        return sum_by_name(declared.expected_bytes(sizes) for declared in cls._declared.values())
 
     @classmethod
     def refuse_large(cls, context: Context, sizes: object) -> None:
         """Raise DeviceError, before anything is made, where a buffer would be larger than the device allows one to be,
         or all together than what it has left."""
-        for declared in _declarations(cls).values():
+        for declared in cls._declared.values():
             declared.refuse_large(context, sizes, cls.remedy)
         needed, available = sum(cls.expected_bytes(sizes).values()), context.available_memory
         if available is not None and needed > available:
@@ -248,12 +255,6 @@ def sum_by_name(parts: Iterable[Mapping[str, int]]) -> dict[str, int]:
         for name, size in part.items():
             sums[name] = sums.get(name, 0) + size
     return sums
-
-
-def _declarations(kind: type[BufferSet]) -> dict[str, Declared]:
-    """Those of a class, after those of the classes that it is made from."""
-    members = (item for base in reversed(kind.__mro__) for item in vars(base).items())
-    return {name: member for name, member in members if isinstance(member, Declared)}
 
 
 def _bytes_of(resource: Resource, name: str = "") -> dict[str, int]:

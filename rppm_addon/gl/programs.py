@@ -17,6 +17,7 @@ import moderngl
 from ..scene.errors import DeviceError
 from .background_compiler import BackgroundCompiler, CompilerContext, EmptyDispatch, is_of_use
 from .binary_cache import BinaryCache
+from .bindings import UNIFORM_BINDINGS
 from .buffers import BufferRange
 from .constants import Constants
 from .context import Context
@@ -36,6 +37,8 @@ GROUPS_PER_ROW = 65535
 """Groups of a dispatch along an axis that every device allows."""
 _QUAD = 6
 """Vertices of two triangles: draws are cut between them."""
+ITERATION = "Iteration"
+"""Name of the uniform block that all stages of an iteration share."""
 FIRST_INVOCATION = "first_invocation"
 """The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
 Block = moderngl.Buffer | BufferRange
@@ -63,13 +66,14 @@ class _Program:
             self._bindings |= source.blocks
             self._textures |= source.textures
             self.record = self.record or source.parameters
+        uniform_blocks = {ITERATION} if any(source.reads_iteration for source in sources) else set()
         self.with_large: Callable[[frozenset[str]], Any] | None = None
         """The program that reads the blocks of these names as texels, as far as it can."""
         texel_buffers = {name: buffer for source in sources for name, buffer in source.texel_buffers.items()}
         self._texel_bytes = {name: buffer.texel_bytes for name, buffer in texel_buffers.items()}
         self._texel_buffers = TexelBuffers(context, texel_buffers) if texel_buffers else None
-        self.blocks = frozenset(self._bindings) | self._textures.keys() | texel_buffers.keys()
-        """Names of the storage blocks and textures that it reads and writes."""
+        self.blocks = frozenset(self._bindings) | self._textures.keys() | texel_buffers.keys() | uniform_blocks
+        """Names of the storage blocks, textures and shared uniform blocks that it reads and writes."""
         self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
 
     def _for_large(self, buffers: Mapping[str, Any]) -> Any:
@@ -106,11 +110,13 @@ class _Program:
             buffers[block].bind_to_storage_buffer(binding)
         for sampler, unit in self._textures.items():
             buffers[sampler].use(unit)
+        if ITERATION in self.blocks:
+            buffers[ITERATION].bind_to_uniform_block(UNIFORM_BINDINGS[ITERATION])
         if self._texel_buffers is not None:
             self._texel_buffers.bind(buffers)
         if self._parameters is not None:
             self._parameters.write(self.record.pack(dict(parameters or {})))
-            self._parameters.bind_to_uniform_block(0)
+            self._parameters.bind_to_uniform_block(UNIFORM_BINDINGS["Parameters"])
         if self.before_dispatch is not None:
             self.before_dispatch()
             self.before_dispatch = None

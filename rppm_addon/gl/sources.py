@@ -22,7 +22,8 @@ SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent
 _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+))\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _BLOCK = re.compile(r"^((?:\w+\s+)*buffer\s+(\w+))\s*([;{].*)$")
-_PARAMETERS = re.compile(r"\buniform\s+\w+\s*\{\s*(\w+)\s+\w+\s*;")
+_PARAMETERS = re.compile(r"\buniform\s+Parameters\s*\{\s*(\w+)\s+\w+\s*;")
+_ITERATION = re.compile(r"\buniform\s+Iteration\b")
 _LOCAL_SIZE = re.compile(r"local_size_x\s*=\s*(\d+)")
 # "0:12(3): error" (Mesa), "0(12) : error" (NVIDIA), "ERROR: 0:12:" (AMD, Intel, glslang)
 _POSITION = re.compile(r"\b(\d+)(?::|\()(\d+)\b\)?")
@@ -65,6 +66,11 @@ class Source:
         """The record of the parameter block, if there is one."""
         match = _PARAMETERS.search(self.text)
         return Record.registry[match.group(1)] if match else None
+
+    @property
+    def reads_iteration(self) -> bool:
+        """Whether there is the uniform block Iteration."""
+        return _ITERATION.search(self.text) is not None
 
     @property
     def local_size(self) -> int:

@@ -25,7 +25,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         stages.clear(context)
         context = context.with_blocks(stages.blocks_of(band))
         view = jittered_view(context.scene.camera, context.settings, band, iteration)
-        camera_hits.find(context, importons, view, band, iteration)  # DirectCameraHits
+        camera_hits.find(context, importons, view, band)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons, iteration)
         yield
         for segment in range(context.settings.camera_segments):  # TraceImportons
@@ -33,32 +33,30 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
                 break
             stages.photon_noise.count(importons, iteration)
             importons.resolve(context, iteration, segment)
-            stages.subsurface.walk_camera_paths(context, importons, band, iteration, segment)
+            stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
-            stages.shadow_catcher.cast(context, importons, band, iteration, segment)
-            stages.direct_light.add(context, importons, band, iteration, segment, radii)
+            stages.shadow_catcher.cast(context, importons, band, segment)
+            stages.direct_light.add(context, importons, band, iteration, segment)
             yield
             film.add_passes(context, importons, band, iteration, segment)
             film.add_caught_shadows(context, importons, band, iteration, segment)
             light.add_direct_light(context, importons, stages.direct_light, film, band, iteration, segment)
             groups.add_direct_light(context, importons, stages.direct_light, iteration)
-            importons.scatter(context, band, iteration, segment, radii)
+            importons.scatter(context, band, segment)
             film.add_seen_light(context, importons, band, iteration, segment)
             groups.add_seen_light(context, importons, iteration)
-            stages.coverage.probe(context, importons, band, iteration, segment, radii)
+            stages.coverage.probe(context, importons, band, segment)
             raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
         if iteration.needs_radiance:
-            stages.final_gather.share(context, estimator.sums, importons.radiances, band, iteration, radii)
+            stages.final_gather.share(context, estimator.sums, importons.radiances, band, radii)
         if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
-            film.accumulate(context, importons.radiances, estimator.sums, band, iteration)
-            film.add_aovs(importons, band, iteration)
+            film.accumulate(context, importons.radiances, estimator.sums, band)
+            film.add_aovs(context, importons, band)
             stages.noise_estimate.add(context, importons.radiances, estimator.sums, band, iteration)
-            light.add_indirect_light(
-                context, importons, stages.final_gather, estimator.sums, film, band, iteration, radii
-            )
-            groups.accumulate(context, stages.final_gather, estimator.sums, film, band, iteration, radii)
+            light.add_indirect_light(context, importons, stages.final_gather, estimator.sums, film, band, radii)
+            groups.accumulate(context, stages.final_gather, estimator.sums, film, band, radii)
         if iteration.precedes_learning:
             findings.append(_read_findings(context, stages, learning, band, iteration, radii))
     _learn(context, stages, learning, iteration, findings)
@@ -67,6 +65,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
 
 def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration) -> Iterator[None]:
     """DirectPhotonHits and TracePhotons, in steps."""
+    context.begin(iteration)
     photons = stages.photons
     photons.emit(context, iteration)
     stages.media.enter_photons(context, photons, iteration)
@@ -83,7 +82,8 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     estimator = stages.density_estimator
     listed = stages.photons.list_stored(context, estimator.photon_list, iteration)
     radii = learning.radii_for(iteration, listed)
-    estimator.begin(context.settings, stages.photons.stored(context, iteration, listed, radii), iteration)
+    context.iteration_block.write_radii(radii)
+    estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
     return radii
 
 
@@ -93,11 +93,11 @@ def _read_findings(
     """Read what a band tells of its photons, once nothing needs the radiances of the band any more."""
     sums, fraction = stages.density_estimator.sums, learning.photon_fraction(iteration)
     taken = sums.photons_taken(band.pixel_count)
-    stages.caustic_radii.narrow(sums, band, iteration, radii, fraction, context.timers)
+    stages.caustic_radii.narrow(context.blocks, sums, band, radii, fraction, context.timers)
     if not iteration.weighs_noise:
         return BandFindings(taken)
     gather, importons = stages.final_gather, stages.importons
-    return BandFindings(taken, stages.photon_noise.sample(context, importons, gather, sums, band, iteration, radii))
+    return BandFindings(taken, stages.photon_noise.sample(context, importons, gather, sums, band, radii))
 
 
 def _learn(

@@ -73,16 +73,18 @@ def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> P
     """Look at the scene; follows_rays: along the gathering rays as well."""
     camera, settings = context.scene.camera, context.settings
     importons, iteration = stages.importons, Iteration(0, settings.seed)
+    context.begin(iteration)
     unlimited = Radii(0.0, 1e30, 0.0, radius_in_pixels(settings, camera), 1.0, 1.0)
+    context.iteration_block.write_radii(unlimited)
     for columns, rows in pilot_sizes(*camera.resolution):
         footprints, ends = [], []
         for view in pilot_views(camera, columns, rows, stages.bands[0].rows):
             band = Band(columns, 0, int(view["height"][0]))
             context = context.with_blocks(stages.blocks_of(band))
-            stages.camera_hits.find(context, importons, view, band, iteration)
+            stages.camera_hits.find(context, importons, view, band)
             importons.resolve(context, iteration, 0)
-            stages.subsurface.walk_camera_paths(context, importons, band, iteration, 0)
-            importons.scatter(context, band, iteration, 0, unlimited)
+            stages.subsurface.walk_camera_paths(context, importons, band, 0)
+            importons.scatter(context, band, 0)
             footprints.append(importons.footprints(band.pixel_count))
             if follows_rays:
                 stride = -(-columns * rows // MOST_GATHERING_RAYS)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of rays with triangles, whatever structure leads to these. Takes the storage block binding 8.
+// Tests of rays with triangles, whatever structure leads to these.
 #include "common/constants.glsl"
 #include "common/intersection.glsl"
 #include "acceleration/triangles.glsl"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tracing rays through a bounding volume hierarchy (rppm_addon/integrator/bvh), for kernels that include TRAVERSAL.
-// Takes the storage block bindings 8 and 10.
 //
 // A node holds the boxes of both of its children. A ray goes on with the nearer of those that it meets and puts the
 // other one on a stack. Which one comes first changes no hit, only how soon a hit is found.

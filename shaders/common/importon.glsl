@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer declares before ESTIMATE_PARAMETERS among its parameters, and the blocks Importons and Photons.
+// The includer declares the blocks Importons and Photons before.
+#include "common/iteration.glsl"
 #include "common/photon.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/sampling.glsl"
@@ -58,17 +59,17 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
 
 // Of direct light: rays find the rest. All of it where only the photons bring it.
 float direct_share(uint photon_number, float radius) {
-    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+    if (!(iteration.direct_world_flux > 0.0)) return 1.0;
     PhotonOrigin world = photon_origins[photon_path_of(photons[photon_number].path)];
-    return world_direct_photon_share(world.radiance, world.pdf, parameters.direct_world_flux, radius);
+    return world_direct_photon_share(world.radiance, world.pdf, iteration.direct_world_flux, radius);
 }
 
 // The gathering ray finds the rest, unless its path ends before.
 float caustic_share(uint photon_number, uint importon_history, float radius) {
     float radiance = photon_origins[photon_path_of(photons[photon_number].path)].radiance;
     uint bounces = bounces_of(arrived_depth(importon_history) + photons[photon_number].depth);
-    bool found = radiance > 0.0 && bounces <= parameters.camera_bounces;
-    return found ? world_photon_share(radiance, parameters.photon_flux, radius) : 1.0;
+    bool found = radiance > 0.0 && bounces <= iteration.camera_bounces;
+    return found ? world_photon_share(radiance, iteration.photon_flux, radius) : 1.0;
 }
 
 // What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which it
@@ -82,10 +83,10 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
 // has passed more transparent surfaces.
 bool exceeds_depth(uint importon_history, uint photon_number) {
     uint depth = arrived_depth(importon_history) + (photons[photon_number].depth & DEPTH_MASK);
-    uint most = parameters.max_bounces;
-    if (parameters.limits_bounces != 0u)
+    uint most = iteration.max_bounces;
+    if (iteration.limits_bounces != 0u)
         most = min(most, photon_origins[photon_path_of(photons[photon_number].path)].max_bounces);
-    return bounces_of(depth) > most || transparents_of(depth) > parameters.transparent_max_bounces;
+    return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
 }
 
 // What diffused photons count for: the disk's area over that of the surface in it (coverage/probe.comp).

@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 
 #include <CoverageParameters>
 #include <Coverage>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/sampling.glsl"
 #include "common/random.glsl"
@@ -34,7 +35,7 @@ shared uint pending_count;
 
 Disk disk_of(uint index) {
     float least = importons[index].least_radius, most = importons[index].radius;
-    float radius = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, least, most, parameters.wide_radius);
+    float radius = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, least, most, iteration.wide_radius);
     return Disk(importons[index].position, unpack_unit_vector(importons[index].geometric_normal), radius,
                 closures[index].triangle);
 }
@@ -90,7 +91,7 @@ float covered(Disk disk, vec3 point) {
 }
 
 RandomSequence random_of(uint index) {
-    return random_sequence(parameters.seed, parameters.iteration, STAGE_COVERAGE, parameters.segment,
+    return random_sequence(iteration.seed, iteration.number, STAGE_COVERAGE, parameters.segment,
                            parameters.first_pixel + index);
 }
 

@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 
 #include <CryptomatteParameters>
 #include <CryptomatteNames>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -26,10 +27,10 @@ uint first;  // pair of the pixel
 
 // Make room for an iteration's path.
 void begin_iteration() {
-    float kept = float(parameters.iteration - 1u) / float(parameters.iteration);
+    float kept = float(iteration.number_in_film - 1u) / float(iteration.number_in_film);
     for (uint pair = first; pair < first + parameters.pair_count; pair++) {
         uvec2 held = pairs[pair];
-        pairs[pair] = parameters.iteration == 1u ? uvec2(0u)
+        pairs[pair] = iteration.number_in_film == 1u ? uvec2(0u)
                     : uvec2(held.x, floatBitsToUint(kept * uintBitsToFloat(held.y)));
     }
 }
@@ -67,5 +68,5 @@ void main() {
     if (!(share > 0.0)) return;
     bool by_material = parameters.names == NAMES_OF_MATERIALS;
     uint name = by_material ? closure.material : attributes[closure.triangle].instance;
-    cover(identifiers[name], share / float(parameters.iteration));
+    cover(identifiers[name], share / float(iteration.number_in_film));
 }

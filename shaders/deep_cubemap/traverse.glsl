@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tracing rays through the deep cubemap, for kernels that include TRAVERSAL. Takes the storage block bindings 8 to 13.
+// Tracing rays through the deep cubemap, for kernels that include TRAVERSAL.
 //
 // Seen from the center a ray runs through up to six faces, and on each through a row of cells. The
 // borders of cells are planes through the center, so where the ray leaves a cell is a plain ray and

@@ -5,6 +5,7 @@
 
 layout(local_size_x = 64) in;
 
+#include "common/iteration.glsl"
 #include "common/constants.glsl"
 #include "common/geometry.glsl"
 #include "common/living_paths.glsl"
@@ -24,7 +25,7 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     uint surfaces = transparents_of(camera_paths[index].depth) + parameters.passed;
-    vec3 passed = surfaces < parameters.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
+    vec3 passed = surfaces < iteration.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
     Ray ray = shadow_rays[index];
     contributions[index].rgb *= passed;
     shadow_rays[index].maximum_distance = 0.0;

@@ -9,6 +9,7 @@
 layout(local_size_x = 64) in;
 
 #include <DirectLightParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
@@ -37,7 +38,7 @@ struct Parts { vec3 glossy; vec3 transmission; };
 
 // The alpha above which lobes are evaluated toward lights.
 float smoothest_lit(bool gathered) {
-    return gathered ? parameters.specular_alpha : min(SMOOTHEST_LIT, parameters.specular_alpha);
+    return gathered ? iteration.specular_alpha : min(SMOOTHEST_LIT, iteration.specular_alpha);
 }
 
 // Whether a lobe is. What fibers scatter after a gathering ray is left to photons, as of all that store none.
@@ -76,7 +77,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         float cosine = dot(normal, wi);
         if (!lobe_is_lit(lobe, gathered) || !lobe_faces(lobe, cosine, front)) continue;
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
-        bool specular = lobe_is_specular(lobe, parameters.specular_alpha);
+        bool specular = lobe_is_specular(lobe, iteration.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
         if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > SMOOTHEST_LIT)))
             weight *= power_heuristic(light_pdf, part_probability((specular ? shares.specular : shares.stored)[1 + k],
@@ -160,7 +161,7 @@ float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo, bool 
 
 // What they leave to rays along a direction.
 float left_to_rays(vec3 point, vec3 direction, float radius) {
-    if (!(parameters.direct_world_flux > 0.0)) return 1.0;
+    if (!(iteration.direct_world_flux > 0.0)) return 1.0;
 #ifdef PORTALS
     if (view_portals(point, direction, NO_PORTAL).pdf > 0.0) return 1.0;
 #endif
@@ -208,7 +209,7 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
 // The LightLink by which a shadow ray meets what is in its way. Reflections of lights without shadows are hidden like
 // others.
 uint arriving_link(Arriving arriving, bool reflected) {
-    if (parameters.links_lights == 0u) return 0u;
+    if (iteration.links_lights == 0u) return 0u;
     if (arriving.triangle != NO_TRIANGLE) return emitter_traits(arriving.triangle) >> EMITTER_LINK_SHIFT;
     Light light = lights[arriving.light];
     return reflected && (light.flags & LIGHT_SHADOWLESS) != 0u ? 0u : light.link;
@@ -228,19 +229,19 @@ void main() {
     Closure closure = closures[index];
     CameraPath path = camera_paths[index];
     uint flags = path.flags, bounces = bounces_of(path.depth);
-    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > parameters.camera_bounces) return;
-    if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
-    bool gathered = (flags & PATH_GATHERED) != 0u, gathers = parameters.final_gather != 0u
-        && bounces < parameters.camera_bounces
-        && path_gathers(flags, length_to_gather_by(closure), parameters.gathers_again_below);
+    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > iteration.camera_bounces) return;
+    if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
+    bool gathered = (flags & PATH_GATHERED) != 0u, gathers = iteration.final_gather != 0u
+        && bounces < iteration.camera_bounces
+        && path_gathers(flags, length_to_gather_by(closure), iteration.gathers_again_below);
     vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed,
                                 STAGE_DIRECT_LIGHT << 24u));
 #ifdef HAIR_LOBES
     fiber_seed = choices.w + 2654435769u * parameters.light_sample;
 #endif
     vec3 viewer = -ray.direction;
-    PathShares shares = path_shares(index, closure, throughput, viewer, parameters.specular_alpha, gathers,
+    PathShares shares = path_shares(index, closure, throughput, viewer, iteration.specular_alpha, gathers,
                                     (flags & PATH_STRAIGHT) != 0u);
     Parts parts;  // shares of it
     Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered),

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <FilmParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 uniform Parameters { FilmParameters parameters; };
 #include "splat_sums/read.glsl"
@@ -19,10 +20,10 @@ void main() {
     vec4 radiance = radiances[index], photons = vec4(read_sum(index, false) * parameters.quantum, 0.0);
     vec4 estimate = radiance + photons;
     uint pixel = parameters.first_pixel + index;
-    vec4 mean = parameters.iteration == 1u ? vec4(0.0) : film[pixel];
-    film[pixel] = mean + (estimate - mean) / float(parameters.iteration);
+    vec4 mean = iteration.number_in_film == 1u ? vec4(0.0) : film[pixel];
+    film[pixel] = mean + (estimate - mean) / float(iteration.number_in_film);
     if (parameters.is_filtered == 0u) return;
     photons.a = luminance(radiance.rgb) * luminance(radiance.rgb);
-    mean = parameters.iteration == 1u ? vec4(0.0) : photon_light[pixel];
-    photon_light[pixel] = mean + (photons - mean) / float(parameters.iteration);
+    mean = iteration.number_in_film == 1u ? vec4(0.0) : photon_light[pixel];
+    photon_light[pixel] = mean + (photons - mean) / float(iteration.number_in_film);
 }

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <AovParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 uniform Parameters { AovParameters parameters; };
 readonly buffer AovValues;
@@ -13,6 +14,6 @@ buffer FilmAovs { float film_aovs[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    float mean = parameters.iteration == 1u ? 0.0 : film_aovs[index];
-    film_aovs[index] = mean + (aov_values[index] - mean) / float(parameters.iteration);
+    float mean = iteration.number_in_film == 1u ? 0.0 : film_aovs[index];
+    film_aovs[index] = mean + (aov_values[index] - mean) / float(iteration.number_in_film);
 }

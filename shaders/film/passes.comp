@@ -10,6 +10,7 @@
 layout(local_size_x = 64) in;
 
 #include <PassParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -60,9 +61,9 @@ void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 
 // Make room for an iteration's path.
 void begin_iteration() {
-    bool first = parameters.iteration == 1u;
+    bool first = iteration.number_in_film == 1u;
     if (first) pass_counts[index] = uvec2(0u);
-    float kept = float(parameters.iteration - 1u) / float(parameters.iteration);
+    float kept = float(iteration.number_in_film - 1u) / float(iteration.number_in_film);
     for (uint which = 0u; which < PASS_COUNT; which++) {
         bool is_sum = PASS_ACCUMULATION[which] == ACCUMULATION_SUM;
         if (!is_on(which) || !(first || is_sum)) continue;

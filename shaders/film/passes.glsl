@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the values of a band's passes lie (scene/passes.py). Needs the members passes, pixels and iteration of the
+// Where the values of a band's passes lie (scene/passes.py). Needs the members passes and pixels of the
 // parameters; pixels are those of the band.
 
+#include "common/iteration.glsl"
 #include <Passes>
 buffer PassValues;
 // Of a band's paths before they are scattered: radiance, and what they are, as flags.
@@ -22,5 +23,5 @@ void add_to_pass(uint which, uint pixel, vec3 value) {
     if (!is_on(which)) return;
     uint place = place_of(which, pixel);
     for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++)
-        pass_values[place + channel] += value[channel] / float(parameters.iteration);
+        pass_values[place + channel] += value[channel] / float(iteration.number_in_film);
 }

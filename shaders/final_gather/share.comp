@@ -11,6 +11,7 @@
 layout(local_size_x = 64) in;
 
 #include <ShareParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/geometry.glsl"
 #include "common/random.glsl"
@@ -67,7 +68,7 @@ void main() {
     vec2 own_flight = flight(vertex.xyz, normal, hit, scale);
     bool found_own = own != vec3(0.0);
     // The same neighbors in all iterations, so that what each of them finds fills its hemisphere evenly.
-    vec4 turn = progressive_random(parameters.seed, 0u, STAGE_GATHERING, 0u, parameters.first_pixel + index);
+    vec4 turn = progressive_random(iteration.seed, 0u, STAGE_GATHERING, 0u, parameters.first_pixel + index);
     ivec2 size = ivec2(parameters.width, parameters.count / parameters.width);
     ivec2 pixel = ivec2(index % parameters.width, index / parameters.width);
     vec2 direction = parameters.radius_in_pixels * vec2(cos(2.0 * PI * turn.x), sin(2.0 * PI * turn.x));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The radii in which photons count where camera paths come to. The includer declares before RADIUS_PARAMETERS
-// (rppm_addon/integrator/density_estimation/radii.py), segment, iteration, and the buffers Camera and RadiusFactors.
+// The radii in which photons count where camera paths come to. The includer declares before the member
+// segment of its parameters, and the buffers Camera and RadiusFactors.
 
+#include "common/iteration.glsl"
 #include "gbuffer/projections.glsl"
 #include "common/disk_radius.glsl"
 
@@ -12,15 +13,15 @@ float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
     if (parameters.segment == 0u) {
         // Eq. 3: radius of the disk that a pixel's footprint covers, times the scale.
         float facing = max(abs(dot(unpack_unit_vector(closure.geometric_normal), direction)), 1e-4);
-        path.primary_radius *= parameters.radius_scale / sqrt(facing);
+        path.primary_radius *= iteration.radius_scale / sqrt(facing);
     }
     // Eq. 4, with the limits that shrink as the radius does. Parallel rays stay as far apart as they are.
     float radius = path.primary_radius * (parallel ? 1.0 : path.total_length);
-    return parameters.shrinkage * clamp(radius, parameters.radius_minimum, parameters.radius_maximum);
+    return iteration.shrinkage * clamp(radius, iteration.radius_minimum, iteration.radius_maximum);
 }
 
 // Of photons that only specular surfaces have scattered, if any; index: in the band.
 float caustic_radius_of(uint index, float radius, bool gathered) {
-    float factor = parameters.iteration <= 1u ? parameters.most_radius_factor : radius_factors[index];
-    return gathered ? max(radius, parameters.radius_by_ray) : factor * radius;
+    float factor = iteration.number <= 1u ? iteration.most_radius_factor : radius_factors[index];
+    return gathered ? max(radius, iteration.radius_by_ray) : factor * radius;
 }

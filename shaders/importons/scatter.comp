@@ -10,6 +10,7 @@
 layout(local_size_x = 64) in;
 
 #include <ScatterImportonsParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
@@ -89,11 +90,11 @@ struct EnvironmentView { float plain_pdf; float pdf; bool is_shared; };
 // start: where the ray was scattered.
 EnvironmentView view_environment(vec3 start, Ray ray) {
     float plain_pdf = world_shadow_ray_pdf(ray.direction);
-    bool left_to_rays = parameters.final_gather != 0u && environment_is_even();
+    bool left_to_rays = iteration.final_gather != 0u && environment_is_even();
     EnvironmentView view = EnvironmentView(plain_pdf, left_to_rays ? 0.0 : plain_pdf, environment_is_even());
 #ifdef PORTALS
     PortalView portals = view_portals(start, ray.direction, NO_PORTAL);
-    if (portals.solid_angle > 0.0) view.pdf = parameters.world_selection * mixed_world_pdf(portals, ray.direction);
+    if (portals.solid_angle > 0.0) view.pdf = iteration.world_selection * mixed_world_pdf(portals, ray.direction);
     if (portals.pdf > 0.0) {
         view.plain_pdf = ONLY_SHADOW_RAYS;
         view.is_shared = false;
@@ -111,8 +112,8 @@ float environment_weight(CameraPath path, EnvironmentView view) {
 // others see is no matter of bounces, as in Cycles.
 vec3 found_world(uint flags, uint depth, vec3 direction) {
     bool gathered = (flags & PATH_GATHERED) != 0u;
-    if ((camera_ray_kind(flags) & parameters.world_visibility & RAYS_WITH_VISIBILITY) == 0u
-        || (gathered && bounces_of(depth) > parameters.world_bounces + 1u)) return vec3(0.0);
+    if ((camera_ray_kind(flags) & iteration.world_visibility & RAYS_WITH_VISIBILITY) == 0u
+        || (gathered && bounces_of(depth) > iteration.world_bounces + 1u)) return vec3(0.0);
     return world_radiance(direction, (flags & PATH_STRAIGHT) != 0u && !gathered);
 }
 
@@ -120,7 +121,7 @@ vec3 found_world(uint flags, uint depth, vec3 direction) {
 // photons but for the environment's. Shadow rays find direct light, and share the environment's with this ray.
 void end_gathering_ray(uint index, CameraPath path, vec3 world, EnvironmentView view) {
     if ((path.flags & PATH_CAUSTIC) == 0u) {
-        if (parameters.next_event == 0u) return;
+        if (iteration.next_event == 0u) return;
         vec3 arrived = path.throughput * world * environment_weight(path, view);
         arrived *= 1.0 - direct_photon_share(world, view.plain_pdf, gathering_vertices[index].radius);
         bool is_shared = (path.flags & PATH_GATHERED_AGAIN) != 0u || view.is_shared;
@@ -128,13 +129,13 @@ void end_gathering_ray(uint index, CameraPath path, vec3 world, EnvironmentView 
         else radiances[index].rgb += gathering_vertices[index].weight * arrived;
         return;
     }
-    float photons = world_photon_share(largest(world), parameters.photon_flux, gathering_vertices[index].radius);
+    float photons = world_photon_share(largest(world), iteration.photon_flux, gathering_vertices[index].radius);
     gathering_vertices[index].found += path.throughput * world * (1.0 - photons);
 }
 
 // Radiance and alpha of what lies behind everything. background: no light object was passed.
 vec4 seen_environment(CameraPath path, vec3 world, EnvironmentView view, bool background) {
-    if ((path.flags & PATH_STRAIGHT) != 0u && background && parameters.film_transparent != 0u)
+    if ((path.flags & PATH_STRAIGHT) != 0u && background && iteration.film_transparent != 0u)
         return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return vec4(path.throughput * world * environment_weight(path, view), 0.0);
 }
@@ -155,8 +156,8 @@ vec4 seen_surface(CameraPath path, ScatterPoint from, Closure closure) {
     vec4 seen = vec4(0.0);
     uint traits = emitter_traits(closure.triangle);
     bool is_found = (path.flags & PATH_LIGHTS_FOUND) != 0u && (traits & EMITTER_REFLECTED) != 0u;
-    bool is_left = from.gathers && (parameters.gathers_lights == 0u || traits >> EMITTER_LINK_SHIFT != 0u);
-    if (largest(closure.emission) > 0.0 && path_sees_lights(path, parameters.next_event) && !is_found && !is_left)
+    bool is_left = from.gathers && (iteration.gathers_lights == 0u || traits >> EMITTER_LINK_SHIFT != 0u);
+    if (largest(closure.emission) > 0.0 && path_sees_lights(path, iteration.next_event) && !is_found && !is_left)
         seen.rgb = path.throughput * closure.emission * emission_weight(from, closure.triangle);
     if ((path.flags & PATH_STRAIGHT) != 0u)
         seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
@@ -165,7 +166,7 @@ vec4 seen_surface(CameraPath path, ScatterPoint from, Closure closure) {
 
 // Radiance of the light objects on a path's way.
 vec3 passed_radiance(CameraPath path, ScatterPoint from, Ray ray, float way) {
-    if (!path_sees_lights(path, parameters.next_event) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
+    if (!path_sees_lights(path, iteration.next_event) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
     return visible_light(from, ray, way, camera_ray_kind(path.flags), path_absorption(path.flags));
 }
 
@@ -231,7 +232,7 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     event.normal = lobe_normal(lobe);
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
-    if (parameters.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > SMOOTHEST_LIT)
+    if (iteration.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > SMOOTHEST_LIT)
         event.pdf = part_probability(event.probability, all) * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
@@ -239,9 +240,9 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
         sampled.transmitted = dot(sampled.direction, unpack_unit_vector(closure.geometric_normal)) < 0.0;
     event.transmitted = sampled.transmitted;
     event.scatter = lobe_scatter(lobe.kind, sampled.transmitted);
-    bool lights_found = parameters.next_event != 0u && !sampled.transmitted
+    bool lights_found = iteration.next_event != 0u && !sampled.transmitted
                      && looks_for_reflected_lights(lobe, shares, all.total, chosen, viewer,
-                                                   min(SMOOTHEST_LIT, parameters.specular_alpha));
+                                                   min(SMOOTHEST_LIT, iteration.specular_alpha));
     event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND
                                   | PATH_SEEN_THROUGH))
                 | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
@@ -253,7 +254,7 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
 // Behind the last bounce a path only comes through transparent surfaces.
 PathShares limited_shares(PathShares shares, uint bounces, bool is_seen) {
     float straight = shares.specular.x;
-    if (bounces <= parameters.camera_bounces) return shares;
+    if (bounces <= iteration.camera_bounces) return shares;
     return PathShares(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight, path_survival(straight, is_seen));
 }
 
@@ -366,24 +367,24 @@ void main() {
     radiances[index] += vec4(weight, 1.0) * (seen + seen_surface(path, from, closure));
     float radius = vertex_radius(path, ray.direction, closure), most = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, parameters.seed,
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed,
                                 STAGE_IMPORTONS << 24u));
-    vec4 u_lobe = scrambled_sobol4(parameters.iteration - 1u, choices).zxyw;
-    float u_importon = scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)).x;
+    vec4 u_lobe = scrambled_sobol4(iteration.number - 1u, choices).zxyw;
+    float u_importon = scrambled_sobol(iteration.number - 1u, pcg4d(choices)).x;
     uint bounces = bounces_of(path.depth);
     bool is_seen = (path.flags & PATH_STRAIGHT) != 0u;
-    if (!may_pass(closure, path.depth, parameters.transparent_max_bounces)) closure.transparent = vec3(0.0);
-    bool gathers = parameters.final_gather != 0u && bounces < parameters.camera_bounces
-                && path_gathers(path.flags, length_to_gather_by(closure), parameters.gathers_again_below);
+    if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
+    bool gathers = iteration.final_gather != 0u && bounces < iteration.camera_bounces
+                && path_gathers(path.flags, length_to_gather_by(closure), iteration.gathers_again_below);
     PathShares shares = limited_shares(path_shares(index, closure, path.throughput, -ray.direction,
-                                                   parameters.specular_alpha, gathers, is_seen), bounces, is_seen);
+                                                   iteration.specular_alpha, gathers, is_seen), bounces, is_seen);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
     }
     float least_radius = gathered ? most : radius;
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
-                   bounces > parameters.camera_bounces ? 0.0 : most, u_importon,
+                   bounces > iteration.camera_bounces ? 0.0 : most, u_importon,
                    (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
     go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe,
           history);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The views of lights, and their texels. A texel is the cone from the view's tip through a square of its window; its
 // view's margin holds all rays that leave the light that way, wherever on the light they start.
-// Takes the storage block bindings 0 and 1. Needs the member side of the parameters.
+// Needs the member side of the parameters.
 #include <LightView>
 #include <LightTexel>
 readonly buffer LightViews { LightView light_views[]; };

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
@@ -19,7 +20,7 @@ void main() {
                + read_group_sum(index, parameters.group, false) * parameters.quantum;
     uint place = 3u * (parameters.groups * index + parameters.group);
     for (uint channel = 0u; channel < 3u; ++channel) {
-        float mean = parameters.iteration == 1u ? 0.0 : group_values[place + channel];
-        group_values[place + channel] = mean + (light[channel] - mean) / float(parameters.iteration);
+        float mean = iteration.number_in_film == 1u ? 0.0 : group_values[place + channel];
+        group_values[place + channel] = mean + (light[channel] - mean) / float(iteration.number_in_film);
     }
 }

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/gathering.glsl"
 uniform Parameters { LightGroupParameters parameters; };
@@ -18,6 +19,6 @@ void main() {
     if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
     vec3 found = grouped_light_of(index, parameters.group, true)
                + read_group_sum(index, parameters.group, true) * parameters.quantum;
-    if (parameters.group == parameters.world_group) found += gathering_vertices[index].found;
+    if (parameters.group == iteration.world_group) found += gathering_vertices[index].found;
     found_radiances[index] = vec4(found, 0.0);
 }

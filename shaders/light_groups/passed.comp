@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <PassedLightParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
@@ -39,7 +40,7 @@ void main() {
     Ray ray = rays[path_index];
     vec3 passed = vec3(0.0);
     CameraPath path = camera_paths[path_index];
-    if (ray.maximum_distance > 0.0 && path_sees_lights(path, parameters.next_event)
+    if (ray.maximum_distance > 0.0 && path_sees_lights(path, iteration.next_event)
         && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
         path_throughput = path.throughput;
         if ((path.flags & PATH_GATHERED) != 0u) path_throughput *= gathering_vertices[path_index].weight;

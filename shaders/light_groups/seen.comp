@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 uniform Parameters { LightGroupParameters parameters; };
@@ -20,6 +21,6 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     uint triangle = closures[index].triangle;
-    uint group = triangle == NO_TRIANGLE ? parameters.world_group : light_group(0u, triangle);
+    uint group = triangle == NO_TRIANGLE ? iteration.world_group : light_group(0u, triangle);
     add_to_group(index, group, false, radiances[index].rgb - seen_light[index].rgb);
 }

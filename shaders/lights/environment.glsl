@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Radiance of the environment and directions chosen by it. Needs the members world_radiance, environment_width and
-// environment_height of the parameters; width 0 is a constant world.
+// Radiance of the environment and directions chosen by it. An environment_width of 0 is a
+// constant world.
 
+#include "common/iteration.glsl"
 #include "common/sampling.glsl"
 uniform sampler2D environment_image;
 uniform sampler2D environment_seen;
@@ -18,28 +19,28 @@ vec3 equirectangular_to_direction(vec2 uv) {
 }
 
 vec3 world_radiance(vec3 direction) {
-    if (parameters.environment_width == 0u) return parameters.world_radiance;
-    return parameters.world_radiance * textureLod(environment_image, direction_to_equirectangular(direction), 0.0).rgb;
+    if (iteration.environment_width == 0u) return iteration.world_radiance;
+    return iteration.world_radiance * textureLod(environment_image, direction_to_equirectangular(direction), 0.0).rgb;
 }
 
 // Light Path nodes may show the camera another world than the one that gives light.
 vec3 world_radiance(vec3 direction, bool seen) {
-    if (parameters.environment_width == 0u) return parameters.world_radiance;
+    if (iteration.environment_width == 0u) return iteration.world_radiance;
     vec2 at = direction_to_equirectangular(direction);
     vec3 texel;
     if (seen) texel = textureLod(environment_seen, at, 0.0).rgb;
     else texel = textureLod(environment_image, at, 0.0).rgb;
-    return parameters.world_radiance * texel;
+    return iteration.world_radiance * texel;
 }
 
 // Without textures: gathering rays then find it so well that no shadow rays are sent to it.
-bool environment_is_even() { return parameters.environment_width == 0u; }
+bool environment_is_even() { return iteration.environment_width == 0u; }
 
 // A distribution lists the cumulated shares of the rows, then those of the cells within each row.
 struct DirectionTable { uint first; uint width; uint height; };
 
 DirectionTable world_table() {
-    return DirectionTable(0u, parameters.environment_width, parameters.environment_height);
+    return DirectionTable(0u, iteration.environment_width, iteration.environment_height);
 }
 
 uint environment_search(uint first, uint count, float u) {
@@ -89,7 +90,7 @@ vec3 sample_table(DirectionTable table, vec2 u, out float pdf) {
 
 // Pdf in 1/sr with which sample_world gives a direction.
 float world_pdf(vec3 direction) {
-    if (parameters.environment_width == 0u) return 1.0 / (4.0 * PI);
+    if (iteration.environment_width == 0u) return 1.0 / (4.0 * PI);
     return table_pdf(world_table(), direction);
 }
 
@@ -116,6 +117,6 @@ vec2 table_to_square(DirectionTable table, vec3 direction) {
 }
 
 vec2 world_to_square(vec3 direction) {
-    return parameters.environment_width == 0u ? sphere_to_square(direction) : table_to_square(world_table(), direction);
+    return iteration.environment_width == 0u ? sphere_to_square(direction) : table_to_square(world_table(), direction);
 }
 #endif

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The lights, and whose photons are whose. Needs the member light_count of the parameters.
+// The lights, and whose photons are whose.
 
+#include "common/iteration.glsl"
 #include <Light>
 readonly buffer Lights { Light lights[]; };
 
 // Lights hold consecutive ranges of the photons.
 uint light_of(uint photon) {
-    uint low = 0u, high = parameters.light_count - 1u;
+    uint low = 0u, high = iteration.light_count - 1u;
     while (low < high) {
         uint middle = (low + high + 1u) / 2u;
         if (lights[middle].first_photon <= photon) low = middle;

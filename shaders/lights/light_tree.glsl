@@ -3,6 +3,7 @@
 // passes (rppm_addon/integrator/lights/light_tree.py).
 
 #include <LightNode>
+#include "common/iteration.glsl"
 #include "lights/lights.glsl"
 #include "common/intersection.glsl"
 #include "common/light_sets.glsl"
@@ -26,7 +27,7 @@ struct LitPoint { vec3 position; vec3 normal; bool both_sides; uint light_set; }
 
 // The light set of the object that a triangle is of; 0 where lights shine on all alike.
 uint light_set_at(uint triangle) {
-    if (parameters.links_lights == 0u || triangle == NO_TRIANGLE) return 0u;
+    if (iteration.links_lights == 0u || triangle == NO_TRIANGLE) return 0u;
     return light_set_of(triangle_vertices[3u * triangle].w);
 }
 
@@ -109,11 +110,11 @@ const uint KIND_OBJECTS = 0u, KIND_TRIANGLES = 1u, KIND_ENVIRONMENT = 2u, KIND_F
 
 float kind_importance(uint kind, LitPoint point, float environment_irradiance) {
     if (kind >= KIND_FIRST_SUN)
-        return sun_importance(light_nodes[parameters.first_sun + kind - KIND_FIRST_SUN], point);
+        return sun_importance(light_nodes[iteration.first_sun + kind - KIND_FIRST_SUN], point);
     if (kind == KIND_ENVIRONMENT) return environment_irradiance;
     bool objects = kind == KIND_OBJECTS;
-    return tree_importance(objects ? 0u : parameters.triangle_tree,
-                           objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves, point);
+    return tree_importance(objects ? 0u : iteration.triangle_tree,
+                           objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves, point);
 }
 
 // Of a kind among all: so many shine, and their importances come to a total.
@@ -123,7 +124,7 @@ float kind_probability(float importance, float total, float shining) {
 
 // Irradiance that the environment counts for in the choice of a light, W/m^2. An even one is left to gathering rays.
 float chosen_environment_irradiance(vec3 position, bool gathers) {
-    float irradiance = gathers && environment_is_even() ? 0.0 : parameters.environment_irradiance;
+    float irradiance = gathers && environment_is_even() ? 0.0 : iteration.environment_irradiance;
 #ifdef PORTALS
     // Through portals shadow rays find it as well.
     irradiance = portal_irradiance(position, irradiance);
@@ -134,7 +135,7 @@ float chosen_environment_irradiance(vec3 position, bool gathers) {
 // Probability with which choose_light_at comes to a light that has a place in a tree, as that leaf, or to a sun.
 float light_probability(LitPoint point, float environment_irradiance, uint kind, uint leaf) {
     float total = 0.0, shining = 0.0, own = 0.0;
-    for (uint other = 0u; other < KIND_FIRST_SUN + parameters.sun_count; ++other) {
+    for (uint other = 0u; other < KIND_FIRST_SUN + iteration.sun_count; ++other) {
         float importance = kind_importance(other, point, environment_irradiance);
         if (other == kind) own = importance;
         total += importance;
@@ -144,14 +145,14 @@ float light_probability(LitPoint point, float environment_irradiance, uint kind,
     float probability = kind_probability(own, total, shining);
     if (kind >= KIND_FIRST_SUN) return probability;
     bool objects = kind == KIND_OBJECTS;
-    return probability * leaf_probability(objects ? 0u : parameters.triangle_tree,
-                                          objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves,
+    return probability * leaf_probability(objects ? 0u : iteration.triangle_tree,
+                                          objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves,
                                           point, leaf);
 }
 
 // environment_irradiance: what the environment counts for, W/m^2. u_deep takes over where u has been used up.
 LightChoice choose_light_at(LitPoint point, float environment_irradiance, float u, float u_deep) {
-    uint kinds = KIND_FIRST_SUN + parameters.sun_count;
+    uint kinds = KIND_FIRST_SUN + iteration.sun_count;
     float total = 0.0, shining = 0.0;
     // The first sun's is kept as well: most scenes have no other.
     vec4 importances = vec4(0.0);
@@ -166,7 +167,7 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     uint chosen = kinds;
     for (uint kind = 0u; kind < kinds; ++kind) {
         float importance = kind < 4u ? importances[kind]
-                           : sun_importance(light_nodes[parameters.first_sun + kind - KIND_FIRST_SUN], point);
+                           : sun_importance(light_nodes[iteration.first_sun + kind - KIND_FIRST_SUN], point);
         if (!(importance > 0.0)) continue;
         float probability = kind_probability(importance, total, shining);
         chosen = kind;
@@ -175,16 +176,16 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
         u -= probability;
     }
     u = clamp(u / choice.probability, 0.0, 0.99999994);
-    if (chosen == KIND_ENVIRONMENT) choice.light = parameters.world_light;
+    if (chosen == KIND_ENVIRONMENT) choice.light = iteration.world_light;
     else if (chosen >= KIND_FIRST_SUN)
-        choice.light = light_nodes[parameters.first_sun + chosen - KIND_FIRST_SUN].member;
+        choice.light = light_nodes[iteration.first_sun + chosen - KIND_FIRST_SUN].member;
     else {
         bool objects = chosen == KIND_OBJECTS;
         uint member = 0u;
-        choice.probability *= choose_leaf(objects ? 0u : parameters.triangle_tree,
-                                          objects ? parameters.light_tree_leaves : parameters.triangle_tree_leaves,
+        choice.probability *= choose_leaf(objects ? 0u : iteration.triangle_tree,
+                                          objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves,
                                           point, u, u_deep, member);
-        choice.light = objects ? member : parameters.mesh_light;
+        choice.light = objects ? member : iteration.mesh_light;
         choice.triangle = objects ? 0u : member;
     }
     return choice;
@@ -244,16 +245,16 @@ void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, Sc
 PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u, vec3 absorption) {
     PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    uint sun = distances.y >= INFINITY_DISTANCE ? 0u : parameters.sun_count;
-    uint node = parameters.light_tree_leaves > 0u ? 1u : 0u;  // 0: none left
-    while (sun < parameters.sun_count || node > 0u) {
-        bool is_sun = sun < parameters.sun_count;
-        LightNode at = light_nodes[is_sun ? parameters.first_sun + sun : node];
+    uint sun = distances.y >= INFINITY_DISTANCE ? 0u : iteration.sun_count;
+    uint node = iteration.light_tree_leaves > 0u ? 1u : 0u;  // 0: none left
+    while (sun < iteration.sun_count || node > 0u) {
+        bool is_sun = sun < iteration.sun_count;
+        LightNode at = light_nodes[is_sun ? iteration.first_sun + sun : node];
         bool met = is_sun || (at.intensity > 0.0
                               && ray_meets_box(at.low, at.high, from.lit.position, inverse_direction, distances.y));
         uint kind = is_sun ? KIND_FIRST_SUN + sun : KIND_OBJECTS, leaf = node;
         if (is_sun) sun += 1u;
-        else if (met && node < parameters.light_tree_leaves) {
+        else if (met && node < iteration.light_tree_leaves) {
             node *= 2u;
             met = false;
         } else {
@@ -274,14 +275,14 @@ PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, ui
 // begins, which it does not meet; on an object in a light set. emissive: its number among emissive_triangles[].
 Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set, out uint emissive) {
     Hit nearest = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
-    if (parameters.triangle_tree_leaves == 0u) return nearest;
+    if (iteration.triangle_tree_leaves == 0u) return nearest;
     WatertightRay ray = make_watertight_ray(origin, direction);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint node = 1u;
     do {
-        LightNode at = light_nodes[parameters.triangle_tree + node];
+        LightNode at = light_nodes[iteration.triangle_tree + node];
         bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, nearest.distance);
-        if (met && node < parameters.triangle_tree_leaves) { node *= 2u; continue; }
+        if (met && node < iteration.triangle_tree_leaves) { node *= 2u; continue; }
         uint triangle = met ? emissive_triangles[at.member].triangle : NO_TRIANGLE;
         met = met && has_set(at.light_sets, light_set);
         if (met && triangle != from_triangle && (emissive_triangles[at.member].traits & EMITTER_REFLECTED) != 0u) {

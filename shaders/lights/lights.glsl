@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light sources: samples of them from a point, and what a ray sees of them.
-// Needs the members scene_center, scene_radius and gathers_lights of the parameters.
 
+#include "common/iteration.glsl"
 #include "lights/light_table.glsl"
 #include "lights/environment.glsl"
 #include "lights/light_maps.glsl"
@@ -19,7 +19,7 @@ readonly buffer Triangles;
 DirectionTable directions_of(Light light) {
 #ifdef PORTALS
     if ((light.flags & LIGHT_THROUGH_PORTALS) != 0u)
-        return DirectionTable(parameters.portal_table, parameters.portal_width, parameters.portal_height);
+        return DirectionTable(iteration.portal_table, iteration.portal_width, iteration.portal_height);
 #endif
     return world_table();
 }
@@ -57,18 +57,18 @@ vec3 radiant_strength(Light light, vec3 direction) {
 }
 
 // In 1/sr, of shadow rays to the environment where no portals face the point.
-float world_shadow_ray_pdf(vec3 direction) { return parameters.world_selection * world_pdf(direction); }
+float world_shadow_ray_pdf(vec3 direction) { return iteration.world_selection * world_pdf(direction); }
 
 // Of direct light of the environment, what photons bring to an importon with this radius; rays find the rest.
 // shadow_ray_pdf: world_shadow_ray_pdf.
 float direct_photon_share(vec3 radiance, float shadow_ray_pdf, float radius) {
-    if (!(parameters.direct_world_flux > 0.0)) return 0.0;
-    return world_direct_photon_share(largest(radiance), shadow_ray_pdf, parameters.direct_world_flux, radius);
+    if (!(iteration.direct_world_flux > 0.0)) return 0.0;
+    return world_direct_photon_share(largest(radiance), shadow_ray_pdf, iteration.direct_world_flux, radius);
 }
 
 // By its selection probability.
 uint choose_light(float u) {
-    uint low = 0u, high = parameters.light_count - 1u;
+    uint low = 0u, high = iteration.light_count - 1u;
     while (low < high) {
         uint middle = (low + high) / 2u;
         if (lights[middle].selection_end > u) high = middle;
@@ -78,7 +78,7 @@ uint choose_light(float u) {
 }
 
 uint search_emissive_triangle(float u) {
-    uint low = 0u, high = uint(parameters.emissive_triangle_count) - 1u;
+    uint low = 0u, high = uint(iteration.emissive_triangle_count) - 1u;
     while (low < high) {
         uint middle = (low + high) / 2u;
         if (emissive_triangles[middle].cumulated > u) high = middle;
@@ -124,7 +124,7 @@ const LightSample NO_LIGHT_SAMPLE = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0
 // Where a shadow ray to a light ends, meters: short of it by what rounding may move a surface that it lies in.
 float shadow_ray_length(float distance) {
     const float ROUNDING = 1.0 / 524288.0, MOST = 1e-4;
-    return distance - min(ROUNDING * (distance + parameters.scene_radius), MOST * distance);
+    return distance - min(ROUNDING * (distance + iteration.scene_radius), MOST * distance);
 }
 
 // Surfaces are sampled by the solid angle that they have from the point: by area, what a surface gets from a
@@ -325,7 +325,7 @@ uint enter_portal(inout Light light, vec3 point, inout float u) {
     uint portal = NO_PORTAL;
     if (light.kind == LIGHT_WORLD) portal = choose_portal(point, u);
     if (portal == NO_PORTAL) return NO_PORTAL;
-    float through = parameters.portal_fraction, by_table = parameters.portal_table_fraction;
+    float through = iteration.portal_fraction, by_table = iteration.portal_table_fraction;
     bool passes = u < through, takes_table = u < through + by_table;
     float fraction = passes ? through : takes_table ? by_table : 1.0 - through - by_table;
     u = clamp((u - (passes ? 0.0 : takes_table ? through : through + by_table)) / fraction, 0.0, 0.99999994);
@@ -426,7 +426,7 @@ float scatter_mis_weight(float scatter_pdf, float light_pdf) {
 // Whether gathering rays, which set out after so many bounces, share a light with shadow rays. These alone find what
 // has shadows of its own, and keep to the light's limit of bounces.
 bool is_shared_light(Light light, uint bounces) {
-    return parameters.gathers_lights != 0u && light.link == 0u && bounces <= light.max_bounces;
+    return iteration.gathers_lights != 0u && light.link == 0u && bounces <= light.max_bounces;
 }
 
 // Pdf in 1/sr with which sample_light gives a direction from the point to an emissive triangle.

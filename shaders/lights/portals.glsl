@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Portals say where the world's light comes in. They are area lights behind the last light of the table, which face the
-// side that they are of use to (rppm_addon/integrator/lights/portals.py). Needs the members of PORTAL_PARAMETERS.
+// side that they are of use to (rppm_addon/integrator/lights/portals.py).
 
+#include "common/iteration.glsl"
 const uint NO_PORTAL = 0xffffffffu;
 const float ONLY_SHADOW_RAYS = 1e15;  // of direct_photon_share: leaves nothing to photons
 
-Light portal_at(uint portal) { return lights[parameters.light_count + portal]; }
+Light portal_at(uint portal) { return lights[iteration.light_count + portal]; }
 
 // In sr, as seen from a point; of an ellipse that of the parallelogram around it; 0 from behind.
 float portal_solid_angle(Light portal, vec3 point) {
@@ -18,7 +19,7 @@ float portal_solid_angle(Light portal, vec3 point) {
 uint choose_portal(vec3 point, inout float u) {
     uint chosen = NO_PORTAL;
     float total = 0.0;
-    for (uint k = 0u; k < parameters.portal_count; ++k) {
+    for (uint k = 0u; k < iteration.portal_count; ++k) {
         float angle = portal_solid_angle(portal_at(k), point);
         if (!(angle > 0.0)) continue;
         total += angle;
@@ -33,7 +34,7 @@ struct PortalView { float solid_angle; float pdf; };
 
 PortalView view_portals(vec3 point, vec3 direction, uint sampled) {
     PortalView view = PortalView(0.0, 0.0);
-    for (uint k = 0u; k < parameters.portal_count; ++k) {
+    for (uint k = 0u; k < iteration.portal_count; ++k) {
         Light portal = portal_at(k);
         float angle = portal_solid_angle(portal, point);
         if (!(angle > 0.0)) continue;
@@ -53,10 +54,10 @@ PortalView view_portals(vec3 point, vec3 direction, uint sampled) {
 // Pdf of shadow rays to the world: where portals face the point, by these, by what of the world's map passes portals,
 // and for other openings by the map itself.
 float mixed_world_pdf(PortalView view, vec3 direction) {
-    float by_map = world_pdf(direction), through = parameters.portal_fraction;
+    float by_map = world_pdf(direction), through = iteration.portal_fraction;
     if (!(view.solid_angle > 0.0)) return by_map;
-    float by_table = parameters.portal_table_fraction, pdf = through * view.pdf + (1.0 - through - by_table) * by_map;
-    Light portals = lights[parameters.portal_light];
+    float by_table = iteration.portal_table_fraction, pdf = through * view.pdf + (1.0 - through - by_table) * by_map;
+    Light portals = lights[iteration.portal_light];
     return by_table > 0.0 ? pdf + by_table * table_pdf(directions_of(portals), direction) : pdf;
 }
 
@@ -64,7 +65,7 @@ float mixed_world_pdf(PortalView view, vec3 direction) {
 // by_map: where portals do not.
 float portal_irradiance(vec3 point, float by_map) {
     float angle = view_portals(point, vec3(0.0), NO_PORTAL).solid_angle;
-    float through = parameters.portal_fraction + parameters.portal_table_fraction;
+    float through = iteration.portal_fraction + iteration.portal_table_fraction;
     float seen = mix(1.0, min(angle / (2.0 * PI), 1.0), through);
-    return angle > 0.0 ? parameters.environment_irradiance * seen : by_map;
+    return angle > 0.0 ? iteration.environment_irradiance * seen : by_map;
 }

@@ -9,6 +9,7 @@
 layout(local_size_x = 64) in;
 
 #include <EnterMediaParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/camera_path.glsl"
 uniform Parameters { EnterMediaParameters parameters; };
@@ -35,6 +36,6 @@ void main() {
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
     Ray ray = rays[index];
     uint media = parameters.has_camera == 0u ? media_before(ray, hits[index].triangle)
-        : media_beyond(parameters.camera_position, media_of_sources[parameters.light_count], ray.origin);
+        : media_beyond(parameters.camera_position, media_of_sources[iteration.light_count], ray.origin);
     camera_paths[index].flags |= media << FIRST_MEDIUM;
 }

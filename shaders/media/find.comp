@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 #include <FindMediaParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 uniform Parameters { FindMediaParameters parameters; };
 writeonly buffer MediaOfSources;
@@ -19,8 +20,8 @@ readonly buffer Materials;
 
 void main() {
     uint index = invocation_index();
-    if (index > parameters.light_count) return;
-    bool camera = index == parameters.light_count;
+    if (index > iteration.light_count) return;
+    bool camera = index == iteration.light_count;
     vec3 point = parameters.camera_position;
     if (!camera) point = lights[index].position;
     media_of_sources[index] = is_at_surface(point) ? MEDIA_UNKNOWN : media_at(point);

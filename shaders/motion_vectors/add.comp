@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <MotionVectorParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -65,7 +66,7 @@ vec4 vector_at(Hit hit) {
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
-    bool first = parameters.iteration == 1u && parameters.segment == 0u;
+    bool first = iteration.number_in_film == 1u && parameters.segment == 0u;
     if (first) motion_vectors[index] = vec4(0.0);
     if (!(rays[index].maximum_distance > 0.0) || !looks_for_surface(camera_paths[index].flags)) return;
     Closure closure = closures[index];

@@ -3,6 +3,7 @@
 // large room gets its share. The pdf of both ways together divides the flux (balance heuristic,
 // Veach 1997, section 9.2), so aiming moves noise and no energy. Needs the member target_count.
 
+#include "common/iteration.glsl"
 readonly buffer Targets { vec4 targets[]; };  // bounding spheres
 
 // One photon of so many is aimed. The world lights rooms through their windows only: it keeps more
@@ -69,7 +70,7 @@ vec2 sample_target_shadow(vec3 t, vec3 b, float shadows, float u_target, vec2 u)
     float rest = u_target * shadows;
     vec2 place = vec2(0.0);
     for (uint k = 0u; k < parameters.target_count; ++k) {
-        vec3 offset = targets[k].xyz - parameters.scene_center;
+        vec3 offset = targets[k].xyz - iteration.scene_center;
         place = vec2(dot(offset, t), dot(offset, b)) + targets[k].w * sample_disk(u);
         float shadow = targets[k].w * targets[k].w;
         if (rest < shadow) break;
@@ -82,7 +83,7 @@ vec2 sample_target_shadow(vec3 t, vec3 b, float shadows, float u_target, vec2 u)
 float target_shadow_pdf(vec3 t, vec3 b, float shadows, vec2 place) {
     float count = 0.0;
     for (uint k = 0u; k < parameters.target_count; ++k) {
-        vec3 offset = targets[k].xyz - parameters.scene_center;
+        vec3 offset = targets[k].xyz - iteration.scene_center;
         vec2 aside = place - vec2(dot(offset, t), dot(offset, b));
         if (dot(aside, aside) <= targets[k].w * targets[k].w) count += 1.0;
     }

@@ -8,9 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-#include <CutParameters>
 #include "common/living_paths.glsl"
-uniform Parameters { CutParameters parameters; };
 #include "lights/light_table.glsl"
 #include <Lights>
 #include TRAVERSAL

@@ -7,6 +7,7 @@
 layout(local_size_x = 64) in;
 
 #include <EmitParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/photon.glsl"
@@ -45,12 +46,12 @@ PhotonDifferential leaving_differential(Light light, Emission emission, float be
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
 // they pass it by.
 bool enter_scene(inout vec3 origin, vec3 direction) {
-    vec3 offset = origin - parameters.scene_center;
+    vec3 offset = origin - iteration.scene_center;
     float along = dot(offset, direction);
-    float outside = dot(offset, offset) - parameters.scene_radius * parameters.scene_radius;
+    float outside = dot(offset, offset) - iteration.scene_radius * iteration.scene_radius;
     if (outside <= 0.0) return true;
     vec3 nearest = offset - along * direction;
-    float under = parameters.scene_radius * parameters.scene_radius - dot(nearest, nearest);
+    float under = iteration.scene_radius * iteration.scene_radius - dot(nearest, nearest);
     if (under < 0.0 || along > 0.0) return false;
     origin += max(0.0, 0.999 * (-along - sqrt(under))) * direction;
     return true;
@@ -67,7 +68,7 @@ void main() {
     bool aimed = aims && turn % period == period - 1u;
     uint within = aimed ? turn / period : turn - (aims ? turn / period : 0u);
     // A fresh scrambled set for every light and iteration, stratified among the light's photons.
-    uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), parameters.iteration, parameters.seed, STAGE_EMISSION));
+    uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), iteration.number, iteration.seed, STAGE_EMISSION));
     vec2 u_parts = scrambled_sobol(within, pcg4d(seed + 1u));
     EmissionChoice choice = EmissionChoice(scrambled_sobol(within, seed), scrambled_sobol(within, pcg4d(seed)),
                                            u_parts.x, u_parts.y, aimed, aimed_share(light));

@@ -2,6 +2,7 @@
 // Photons that leave the lights. Flux is that of the whole light over the pdf of the choice;
 // the caller shares it out.
 
+#include "common/iteration.glsl"
 #include "lights/lights.glsl"
 #include "common/light_sets.glsl"
 #include "photon_emission/aim.glsl"
@@ -24,14 +25,14 @@ float mixed_pdf(Light light, float plain, vec2 place, vec2 direction, float aime
 Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, EmissionChoice choice) {
     vec3 t, b;
     tangent_frame(direction, t, b);
-    float radius = parameters.scene_radius, shadows = target_shadows();
+    float radius = iteration.scene_radius, shadows = target_shadows();
     bool seen = shadows > 0.0;
     vec2 place = choice.aimed && seen ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
                                       : radius * sample_disk(choice.place);
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
     float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
                                   seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
-    vec3 origin = parameters.scene_center + place.x * t + place.y * b - radius * direction;
+    vec3 origin = iteration.scene_center + place.x * t + place.y * b - radius * direction;
     return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
 }
 

@@ -6,10 +6,8 @@
 
 layout(local_size_x = 64) in;
 
-#include <PortalPassedParameters>
 #include <PhotonFlags>
 #include "common/living_paths.glsl"
-uniform Parameters { PortalPassedParameters parameters; };
 #include "lights/lights.glsl"
 readonly buffer Rays;
 readonly buffer Hits;

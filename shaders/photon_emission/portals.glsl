@@ -5,11 +5,12 @@
 // it.
 
 // Area across a direction, m^2; 0 where light goes the other way.
+#include "common/iteration.glsl"
 float portal_across(Light portal, vec3 direction) { return portal.area * max(dot(direction, portal.normal), 0.0); }
 
 float portals_across(vec3 direction) {
     float sum = 0.0;
-    for (uint k = 0u; k < parameters.portal_count; ++k) sum += portal_across(portal_at(k), direction);
+    for (uint k = 0u; k < iteration.portal_count; ++k) sum += portal_across(portal_at(k), direction);
     return sum;
 }
 
@@ -19,13 +20,13 @@ vec3 sample_portals(vec3 direction, float across, vec2 u, out uint sampled) {
     float rest = u.x * across;
     vec3 place = vec3(0.0);
     sampled = NO_PORTAL;
-    for (uint k = 0u; k < parameters.portal_count; ++k) {
+    for (uint k = 0u; k < iteration.portal_count; ++k) {
         Light portal = portal_at(k);
         float part = portal_across(portal, direction);
         if (!(part > 0.0)) continue;
         vec2 square = vec2(clamp(rest / part, 0.0, 1.0), u.y);
         vec2 at = portal.kind == LIGHT_ELLIPSE ? sample_disk(square) : 2.0 * square - 1.0;
-        place = portal.position + at.x * portal.axis_u + at.y * portal.axis_v - parameters.scene_center;
+        place = portal.position + at.x * portal.axis_u + at.y * portal.axis_v - iteration.scene_center;
         sampled = k;
         if (rest < part) break;
         rest -= part;
@@ -36,11 +37,11 @@ vec3 sample_portals(vec3 direction, float across, vec2 u, out uint sampled) {
 // Pdf in 1/m^2 across the direction with which they are passed at a place, by the guide of their light as well.
 float portals_pdf(Light light, vec3 direction, float across, vec3 place, vec2 direction_square, uint sampled) {
     float before = 0.0, sum = 0.0;
-    for (uint k = 0u; k < parameters.portal_count; ++k) {
+    for (uint k = 0u; k < iteration.portal_count; ++k) {
         Light portal = portal_at(k);
         float part = portal_across(portal, direction);
         if (!(part > 0.0)) continue;
-        vec3 offset = parameters.scene_center + place - portal.position;
+        vec3 offset = iteration.scene_center + place - portal.position;
         vec2 at = area_light_coordinates(portal, offset - dot(offset, portal.normal) / dot(direction, portal.normal)
                                                  * direction);
         // Rounding must not take a photon for one that misses its own portal.
@@ -56,7 +57,7 @@ float portals_pdf(Light light, vec3 direction, float across, vec3 place, vec2 di
 
 // Pdf in 1/m^2 of a place on the disk, as emit_from_infinity has it.
 float world_disk_pdf(Light light, vec3 t, vec3 b, vec2 place, vec2 direction_square, EmissionChoice choice) {
-    float radius = parameters.scene_radius, shadows = target_shadows();
+    float radius = iteration.scene_radius, shadows = target_shadows();
     bool seen = shadows > 0.0;
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
     choice.aimed_share = aimed_share(light);
@@ -65,8 +66,8 @@ float world_disk_pdf(Light light, vec3 t, vec3 b, vec2 place, vec2 direction_squ
 }
 
 Emission emit_from_world(Light light, EmissionChoice choice) {
-    bool by_portals = (light.flags & LIGHT_THROUGH_PORTALS) != 0u, has_portals = parameters.portal_count > 0u;
-    Light disk = lights[parameters.world_light], portals = lights[parameters.portal_light];
+    bool by_portals = (light.flags & LIGHT_THROUGH_PORTALS) != 0u, has_portals = iteration.portal_count > 0u;
+    Light disk = lights[iteration.world_light], portals = lights[iteration.portal_light];
     float direction_pdf, portal_direction_pdf = 0.0;
     vec3 toward = sample_directions(directions_of(light), choice.direction, direction_pdf);
     float world_direction_pdf = by_portals ? world_pdf(toward) : direction_pdf;
@@ -74,8 +75,8 @@ Emission emit_from_world(Light light, EmissionChoice choice) {
     else if (has_portals) portal_direction_pdf = table_pdf(directions_of(portals), toward);
     vec3 direction = -toward, t, b;
     tangent_frame(direction, t, b);
-    float across = portals_across(direction), radius = parameters.scene_radius, shadows = target_shadows();
-    Emission none = Emission(parameters.scene_center, NO_TRIANGLE, direction, vec3(0.0), 0.0, 0.0);
+    float across = portals_across(direction), radius = iteration.scene_radius, shadows = target_shadows();
+    Emission none = Emission(iteration.scene_center, NO_TRIANGLE, direction, vec3(0.0), 0.0, 0.0);
     if (by_portals && !(across > 0.0)) return none;
     uint sampled = NO_PORTAL;
     vec2 place;
@@ -94,6 +95,6 @@ Emission emit_from_world(Light light, EmissionChoice choice) {
     }
     pdf /= float(max(light.photon_count, 1u));
     if (!(pdf > 0.0)) return none;
-    vec3 origin = parameters.scene_center + place.x * t + place.y * b - radius * direction;
+    vec3 origin = iteration.scene_center + place.x * t + place.y * b - radius * direction;
     return Emission(origin, NO_TRIANGLE, direction, world_radiance(toward) / pdf, pdf, INFINITY_DISTANCE);
 }

@@ -7,6 +7,7 @@
 layout(local_size_x = 32) in;
 
 #include <GatherPhotonsParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 uniform Parameters { GatherPhotonsParameters parameters; };
 #include <Importon>
@@ -65,7 +66,7 @@ void main() {
                  : wide_in_use[0] != 0u ? 2u * CORNERS : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
     float radius = importon.radius;
-    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, parameters.wide_radius);
+    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, iteration.wide_radius);
     Cells cells = cells_around(importon.position, radius, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
@@ -103,7 +104,7 @@ void main() {
         if (rejected(photons[number].path, visit.x)) continue;
         Estimate estimate;
         uint stands_for;
-        if (!density_estimate(IMPORTON_OF(importon, visit.x), number, parameters.wide_radius, estimate, stands_for))
+        if (!density_estimate(IMPORTON_OF(importon, visit.x), number, iteration.wide_radius, estimate, stands_for))
             continue;
         any = true;
         photons[number].depth = photons[number].depth | PHOTON_CONTRIBUTED;

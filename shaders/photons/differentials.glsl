@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far from a photon its neighbors come to lie: ray differentials (Igehy, SIGGRAPH 1999) from the light on, by
 // smooth surfaces, as in photon differentials (Frisvad, Schjoth, Erleben, Sporring, Computer Graphics Forum 2014).
-// Needs the members footprint_photons and shrinkage of the parameters.
+// Needs the member footprint_photons of the parameters.
 
+#include "common/iteration.glsl"
 #include <PhotonDifferential>
 readonly buffer Triangles;
 readonly buffer Attributes;
@@ -30,7 +31,7 @@ PhotonDifferential moved_to_hit(PhotonDifferential at, vec3 direction, float dis
 uint packed_footprint(PhotonDifferential at) {
     float blur = BLUR_FRACTION * at.blur;
     float radius2 = parameters.footprint_photons * length(cross(at.place_u, at.place_v)) / PI + blur * blur;
-    return at.known != 0u ? footprint_bits(parameters.shrinkage * sqrt(radius2)) : 0u;
+    return at.known != 0u ? footprint_bits(iteration.shrinkage * sqrt(radius2)) : 0u;
 }
 
 // By how much the shading normal changes with the place on a triangle whose normals are interpolated.

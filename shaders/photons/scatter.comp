@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 
 #include <ScatterPhotonsParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
@@ -77,9 +78,9 @@ float total(vec3 flux) { return flux.x + flux.y + flux.z; }
 // Takes out of a closure what a limit forbids: all but transparency behind the last bounce, and transparency behind
 // the last such surface. Whether anything is left.
 bool may_go_on(inout Closure closure, uint depth) {
-    if (transparents_of(depth) >= parameters.transparent_max_bounces && counts_as_transparent(closure))
+    if (transparents_of(depth) >= iteration.transparent_max_bounces && counts_as_transparent(closure))
         closure.transparent = vec3(0.0);
-    if (bounces_of(depth) < parameters.photon_bounces) return true;
+    if (bounces_of(depth) < iteration.photon_bounces) return true;
     closure.flags |= CLOSURE_KEEPS_LIGHT;
     return largest(closure.transparent) > 0.0;
 }
@@ -122,7 +123,7 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool fr
         result = Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
                             lobe_normal(lobe), sampled.transmitted,
                             (lobe.alpha <= SHARPEST_ALPHA ? 0u : PHOTON_AFTER_ROUGH_BOUNCE)
-                                | (lobe_stores(lobe, parameters.specular_alpha) ? PHOTON_INDIRECT : 0u)
+                                | (lobe_stores(lobe, iteration.specular_alpha) ? PHOTON_INDIRECT : 0u)
                                 | dispersed_flag(closure, lobe, sampled.transmitted),
                             sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
                             lobe_is_diffuse(lobe.kind), lobe_part(lobe, sampled.transmitted), lobe.ior);
@@ -209,7 +210,7 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
 void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival, vec3 flux,
            float left) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_PHOTONS,
+    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_PHOTONS,
                                             parameters.segment, index);
     bool from_light = (path_flags & PHOTON_CASTS_SHADOWS) != 0u;
     Scattering scattering = scatter(index, closure, flux, arrival, from_light, random);
@@ -276,7 +277,7 @@ void main() {
     }
     bool stores = largest(closure.diffuse + closure.translucent) > 0.0;
     for (int k = 0; k < closure_lobes(closure); ++k)
-        stores = stores || lobe_stores(stored_lobe(index, k), parameters.specular_alpha);
+        stores = stores || lobe_stores(stored_lobe(index, k), iteration.specular_alpha);
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) flags |= PHOTON_STORED;
     // Written before the path goes on: what it needs of registers then is more.
     float away = differential.before + closure.distance;

@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <ShadowCatcherParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
@@ -33,7 +34,7 @@ void main() {
     if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure)
         || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SHADOW_CATCHER,
+    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SHADOW_CATCHER,
                                             parameters.segment, parameters.first_pixel + index);
     uint light_set = light_set_of(triangle_vertices[3u * closure.triangle].w), chosen_link = 0u;
     float total = 0.0;

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <CubeParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 uniform Parameters { CubeParameters parameters; };
@@ -20,7 +21,7 @@ void main() {
     if (index >= parameters.count || core_count == 0u) return;
     uint photon = stored_photons[index];
     vec3 p = photons[photon].position - parameters.center;
-    float reach = 3.001 * max(parameters.radius, parameters.wide_radius);
+    float reach = 3.001 * max(parameters.radius, iteration.wide_radius);
     if (dot(p, p) > reach * reach) return;
     for (uint k = 0u; k < core_count; ++k) meet(core_importons[k], photon);
 }

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <SplatParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 #include "gbuffer/projections.glsl"
@@ -24,7 +25,7 @@ void main() {
     vec3 offset = photons[number].position - camera.position;
     vec3 p = vec3(dot(offset, camera.right), dot(offset, camera.up), dot(offset, camera.forward));
     float radius = photon_radius(photons[number].flags, parameters.least_radius, parameters.radius,
-                                 parameters.wide_radius);
+                                 iteration.wide_radius);
     if (p.z < -radius) return;
     vec2 across = vec2(p.x - radius, p.x + radius), along = vec2(p.y - radius, p.y + radius);
     if (camera.projection != PROJECTION_ORTHOGRAPHIC) {

@@ -9,6 +9,7 @@
 layout(local_size_x = 64) in;
 
 #include <CubeParameters>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 #include "splatting/cube.glsl"
@@ -56,7 +57,7 @@ void main() {
     if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
     vec3 p = photons[number].position - parameters.center;
     float distance = length(p), radius = photon_radius(photons[number].flags, parameters.least_radius,
-                                                       parameters.radius, parameters.wide_radius);
+                                                       parameters.radius, iteration.wide_radius);
     if (distance < radius * 0.9999) return;
     float cosine = min((distance * distance + 3.0 * radius * radius) / (4.0 * distance * radius), 1.0);
     float sine = distance >= 2.236 * radius ? radius / distance * 1.00001

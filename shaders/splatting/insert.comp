@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <CubeParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "splatting/cube.glsl"
 uniform Parameters { CubeParameters parameters; };
@@ -18,7 +19,7 @@ void main() {
     if (index == NO_PATH) return;
     if (!(importons[index].radius > 0.0)) return;
     vec3 p = importons[index].position - parameters.center;
-    float core_radius = 2.0 * max(parameters.radius, parameters.wide_radius);
+    float core_radius = 2.0 * max(parameters.radius, iteration.wide_radius);
     if (dot(p, p) < core_radius * core_radius) {
         core_importons[atomicAdd(core_count, 1u)] = index;
         return;

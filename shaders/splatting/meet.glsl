@@ -2,6 +2,7 @@
 // A photon meets an importon. Only what decides whether it is near is read of most pairs.
 // The includer declares the storage blocks of photons[] and importons[] and the parameters.
 
+#include "common/iteration.glsl"
 #include "splat_sums/roulette.glsl"
 #include "splat_sums/add.glsl"
 #include "splat_sums/light.glsl"
@@ -11,11 +12,11 @@ void meet(uint importon, uint photon) {
     vec3 offset = photons[photon].position - importons[importon].position;
     uint flags = photons[photon].flags;
     float radius = photon_radius(flags, importons[importon].least_radius, importons[importon].radius,
-                                 parameters.wide_radius);
+                                 iteration.wide_radius);
     if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
     Estimate estimate;
     uint stands_for;
-    if (!density_estimate(IMPORTON_OF(importons[importon], importon), photon, parameters.wide_radius, estimate,
+    if (!density_estimate(IMPORTON_OF(importons[importon], importon), photon, iteration.wide_radius, estimate,
                           stands_for))
         return;
     add_splat(importon, photon, estimate.radiance, stands_for);

@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <EnterParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/low_discrepancy.glsl"
 uniform Parameters { EnterParameters parameters; };
@@ -49,10 +50,10 @@ void main() {
     }
     Subsurface part = unpacked_subsurface(closure.lobes[CLOSURE_LOBES - 1]);
     vec3 viewer = -rays[index].direction;
-    uvec4 choices = pcg4d(uvec4(parameters.first_path + index, parameters.segment, parameters.seed,
+    uvec4 choices = pcg4d(uvec4(parameters.first_path + index, parameters.segment, iteration.seed,
                                 STAGE_SUBSURFACE << 24u));
-    vec4 u = vec4(scrambled_sobol(parameters.iteration - 1u, choices),
-                  scrambled_sobol(parameters.iteration - 1u, pcg4d(choices)));
+    vec4 u = vec4(scrambled_sobol(iteration.number - 1u, choices),
+                  scrambled_sobol(iteration.number - 1u, pcg4d(choices)));
     float probability = below_probability(index, closure, part, viewer);
     if (u.w < probability) {
         vec3 direction = entered(part, unpack_unit_vector(part.normal), unpack_unit_vector(closure.geometric_normal),

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <EnterParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 uniform Parameters { EnterParameters parameters; };
 readonly buffer Closures;
@@ -21,7 +22,7 @@ void main() {
     Closure closure = closures[index];
     if (!(largest(flux) > 0.0) || !has_subsurface(closure) || adjoint_queries[index].part != PART_DIFFUSE) return;
     Subsurface part = unpacked_subsurface(closure.lobes[CLOSURE_LOBES - 1]);
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SUBSURFACE_PHOTONS,
+    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS,
                                             parameters.segment, index);
     vec3 beside = diffuse_beside(closure, part);
     float below = largest(part.weight), probability = below / (below + largest(beside));

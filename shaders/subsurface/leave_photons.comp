@@ -6,6 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <EnterParameters>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/random.glsl"
 #include "common/sampling.glsl"
@@ -28,7 +29,7 @@ void main() {
     if (hit.triangle == NO_TRIANGLE) flux = vec3(0.0);
     else {
         found = exit_of(index);
-        RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_SUBSURFACE_PHOTONS,
+        RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS,
                                                 parameters.segment, index);
         random.key.w += 0xf00u;
         Subsurface part = unpacked_subsurface(closures[index].lobes[CLOSURE_LOBES - 1]);

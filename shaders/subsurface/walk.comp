@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 
 #include <WalkParameters>
 #include <SubsurfaceWalk>
+#include "common/iteration.glsl"
 #include "common/living_paths.glsl"
 #include "common/sampling.glsl"
 #include "common/random.glsl"
@@ -146,7 +147,7 @@ void main() {
     Ray ray = walk_rays[index];
     if (parameters.first_step == 0u) walk.instance = attributes[ray.source_triangle].instance;
     traced_instance = walk.instance;
-    RandomSequence start = random_sequence(parameters.seed, parameters.iteration, parameters.stage, parameters.segment,
+    RandomSequence start = random_sequence(iteration.seed, iteration.number, parameters.stage, parameters.segment,
                                            parameters.first_path + index);
     Hit hit = Hit(NO_TRIANGLE, 0.0, 0.0, 0.0);
     bool goes_on = true;

@@ -7,6 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <TexelParameters>
 #include <Texel>
+#include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/camera_path.glsl"
@@ -32,9 +33,9 @@ float mirrored(float x, float end) {
 // The texel's point of this iteration; the first is its middle.
 vec2 barycentrics(Texel texel, uint index) {
     vec2 b = vec2(texel.b1, texel.b2);
-    if (parameters.iteration <= 1u) return b;
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, 0u, parameters.seed, STAGE_CAMERA << 24u));
-    vec2 at = scrambled_sobol(parameters.iteration - 1u, choices) - 0.5;
+    if (iteration.number <= 1u) return b;
+    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, 0u, iteration.seed, STAGE_CAMERA << 24u));
+    vec2 at = scrambled_sobol(iteration.number - 1u, choices) - 0.5;
     b += vec2(dot(texel.differentials.xy, at), dot(texel.differentials.zw, at));
     b.x = mirrored(b.x, 1.0);
     b.y = mirrored(b.y, 1.0 - b.x);

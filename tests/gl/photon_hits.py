@@ -19,7 +19,8 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     rays, hits = photons._rays.buffer, photons._hits
     count, lights = scene.settings.photons, context.lights
     photons._living.fill(count)
-    PhotonEmission(library).emit(context, photons.blocks, count, Iteration(2, seed=3))
+    context.begin(Iteration(2, seed=3))
+    PhotonEmission(library).emit(context, photons.blocks, count)
     context.acceleration.trace(rays, hits.buffer, photons._living)
     traced = hits.read(HIT.dtype, count).copy()
     hits.clear()
@@ -27,7 +28,7 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     left = LivingPaths(mapper.context, library, "left", "")
     geometry = context.geometry
     gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry)
-    gbuffer.find(lights.table_buffer, context.geometry, rays, hits.buffer, count, left)
+    gbuffer.find(context.blocks, rays, hits.buffer, count, left)
     settled = 1.0 - left.read_count() / count
     context.acceleration.trace(rays, hits.buffer, left)
     rasterized = hits.read(HIT.dtype, count).copy()

@@ -6,22 +6,23 @@ So pixels begin with a multiple of it, and come back to it as they are seen to t
 earlier iterations took; Eq. 2 shrinks what remains, so the estimate stays consistent.
 """
 
+from collections.abc import Mapping
+
 import moderngl
 import numpy as np
 
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.timers import StageTimers
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
-from ..common.iteration import Iteration
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
 
-Record("NarrowParameters", count="uint", iteration="uint", most_factor="float", expected="float")
+Record("NarrowParameters", count="uint", most_factor="float", expected="float")
 
 _LEAST_FRACTION = 0.25
 """Of the first iteration's photons: disks of fewer hold too few to tell how dense they lie."""
@@ -43,21 +44,27 @@ class CausticRadii(Stage):
         return self._factors.of(band)
 
     def narrow(
-        self, sums: SplatSums, band: Band, iteration: Iteration, radii: Radii, fraction: float, timers: StageTimers
+        self,
+        blocks: Mapping[str, Bindable],
+        sums: SplatSums,
+        band: Band,
+        radii: Radii,
+        fraction: float,
+        timers: StageTimers,
     ) -> None:
         """Learn from the photons that a band's pixels took in an iteration.
 
-        fraction: photons of the iteration over those of the first. Of fewer photons disks hold fewer: that makes
-        noise, which is weighed (common/photon_counts.py), and no wider blur.
+        blocks: the uniform block Iteration among others. fraction: photons of the iteration over those of the first.
+        Of fewer photons disks hold fewer: that makes noise, which is weighed (common/photon_counts.py), and no wider
+        blur.
         """
         held = max(fraction, _LEAST_FRACTION)
         with timers.stage("learning"):
             self._program.run(
                 band.pixel_count,
-                {**sums.blocks, "RadiusFactors": self._factors.of(band)},
+                {**blocks, **sums.blocks, "RadiusFactors": self._factors.of(band)},
                 {
                     "count": band.pixel_count,
-                    "iteration": iteration.number,
                     "most_factor": radii.most_factor,
                     "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 * held / sums.photons_for_one,
                 },

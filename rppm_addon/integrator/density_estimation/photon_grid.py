@@ -18,7 +18,7 @@ from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
-from .stored_photons import ESTIMATE_PARAMETERS, StoredPhotons, TakingImportons
+from .stored_photons import StoredPhotons, TakingImportons
 
 _GRID_PARAMETERS = {
     "caustic_sides": "vec4",
@@ -36,7 +36,6 @@ Record(
     caustics="uint",
     **_GRID_PARAMETERS,
     **SUM_PARAMETERS,
-    **ESTIMATE_PARAMETERS,
 )
 StorageBlock("Buckets", "uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[];")
 StorageBlock("SortedPhotons", "uvec4 sorted_photons[];")
@@ -142,7 +141,6 @@ class PhotonGrid(BufferSet):
                     "caustics": self._holds_caustics,
                     **self._parameters,
                     **sums.parameters,
-                    **importons.parameters(photons),
                 },
             )
             if self._most_rounds == _NO_LIMIT or not unfinished.read(np.uint32, 1)[0]:

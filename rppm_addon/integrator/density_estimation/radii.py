@@ -24,13 +24,15 @@ CORNER_RADII = 2.0
 
 RADIUS_PARAMETERS = {
     "radius_scale": "float",
-    "shrinkage": "float",
     "radius_minimum": "float",
     "radius_maximum": "float",
     "radius_by_ray": "float",
     "most_radius_factor": "float",
+    "wide_radius": "float",
+    "gathers_again_below": "float",
 }
-"""Parameters of shaders/importons/radius.glsl."""
+"""Members of IterationParameters: those of shaders/importons/radius.glsl; the largest radius for photons that diffuse
+surfaces have scattered, meters; and the length below which a gathering ray does not end the search, meters."""
 
 
 @dataclass(frozen=True)
@@ -92,11 +94,12 @@ class Radii:
         """Values of RADIUS_PARAMETERS."""
         return {
             "radius_scale": self.scale,
-            "shrinkage": self.shrinkage,
             "radius_minimum": self.minimum,
             "radius_maximum": self.maximum,
             "radius_by_ray": self.by_ray,
             "most_radius_factor": self.most_factor,
+            "wide_radius": self.splats.wide,
+            "gathers_again_below": self.corner,
         }
 
     @property

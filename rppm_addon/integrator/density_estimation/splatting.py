@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photon splatting by rasterization: onto the camera view (direct) and onto cubemap views (indirect), section 4.2."""
 
+from collections.abc import Mapping
+
 import moderngl
 import numpy as np
 
@@ -13,7 +15,7 @@ from ...gl.storage_blocks import StorageBlock
 from ..common.band import MOST_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
-from .stored_photons import ESTIMATE_PARAMETERS, CameraRaster, StoredPhotons, TakingImportons
+from .stored_photons import CameraRaster, StoredPhotons, TakingImportons
 
 _CUBE_RESOLUTION, _BLOCK_SIZE = 128, 8
 Constants("SplatCubemap", signed=True, BLOCK_SIZE=_BLOCK_SIZE)
@@ -22,8 +24,8 @@ _FEW_IMPORTONS = 40_000
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
-Record("SplatParameters", count="uint", least_radius="float", radius="float", wide_radius="float", gathers="uint")
-Record("QuadParameters", width="uint", height="uint", **SUM_PARAMETERS, **ESTIMATE_PARAMETERS)
+Record("SplatParameters", count="uint", least_radius="float", radius="float", gathers="uint")
+Record("QuadParameters", width="uint", height="uint", **SUM_PARAMETERS)
 Record(
     "CubeParameters",
     center="vec3",
@@ -33,7 +35,6 @@ Record(
     resolution="uint",
     gathers="uint",
     **SUM_PARAMETERS,
-    **ESTIMATE_PARAMETERS,
 )
 StorageBlock("Heads", "uint heads[];")
 StorageBlock("Core", "uint core_count; uint core_importons[];")
@@ -104,7 +105,7 @@ class Splatting(BufferSet):
         view: moderngl.Framebuffer,
         size: tuple[int, int],
         blocks: dict[str, Bindable],
-        parameters: dict[str, object],
+        parameters: Mapping[str, object],
     ) -> None:
         """The quads of the jobs, into a view's part of that size."""
         width, height = size
@@ -128,7 +129,6 @@ class Splatting(BufferSet):
                 "count": photons.count,
                 "least_radius": importons.least_radius(photons),
                 "radius": importons.narrow_radius(photons),
-                "wide_radius": photons.radii.wide,
                 "gathers": importons.gathers,
             },
         )
@@ -137,7 +137,7 @@ class Splatting(BufferSet):
             self._direct_view,
             (raster.width, raster.rows),
             {**photons.blocks, "Importons": importons.importons, **sums.blocks},
-            {**sums.parameters, **importons.parameters(photons)},
+            sums.parameters,
         )
 
     def _indirect(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
@@ -145,18 +145,17 @@ class Splatting(BufferSet):
         self._heads.clear()
         self._core.buffer.write(bytes(4))
         self._reset_jobs()
-        estimate = {**sums.parameters, **importons.parameters(photons)}
         cube = {
             "center": importons.center,
             "least_radius": importons.least_radius(photons),
             "radius": importons.narrow_radius(photons),
             "resolution": self._resolution,
             "gathers": importons.gathers,
-            **estimate,
+            **sums.parameters,
         }
         importons.living.run(
             self._insert,
-            {**self.blocks, "Importons": importons.importons},
+            {**photons.blocks, **self.blocks, "Importons": importons.importons},
             {**cube, "count": importons.living.most},
         )
         self._indirect_jobs.run(
@@ -170,7 +169,7 @@ class Splatting(BufferSet):
             self._cube_view,
             self._cube_size,
             splats,
-            estimate,
+            sums.parameters,
         )
         self._core_program.run(
             photons.count,

@@ -12,23 +12,11 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.programs import ITERATION, Bindable, ProgramLibrary
 from ...gl.records import Record
-from ...scene.lights import UNLIMITED_BOUNCES
 from ..common.living_paths import LivingPaths
 from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii
-
-ESTIMATE_PARAMETERS = {
-    "wide_radius": "float",
-    "photon_flux": "float",
-    "direct_world_flux": "float",
-    "max_bounces": "uint",
-    "transparent_max_bounces": "uint",
-    "camera_bounces": "uint",
-    "limits_bounces": "uint",
-}
-"""Parameters of programs that estimate densities (shaders/common/importon.glsl)."""
 
 Record("StoredParameters", count="uint", takes_direct="uint")
 
@@ -100,13 +88,11 @@ class StoredPhotons:
     """PhotonGroups, where there are any."""
     photon_flux: float
     """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
-    direct_world_flux: float
-    """Iteration's."""
     radii: SplatRadii
     largest_coordinate: float
     """Of any position, meters, by its absolute value."""
-    limits_bounces: bool = False
-    """Whether lights may scatter less often than paths (PhotonOrigin)."""
+    iteration_block: moderngl.Buffer
+    """The uniform block Iteration."""
 
     def first(self, count: int) -> "StoredPhotons":
         """No more than so many of them."""
@@ -125,6 +111,7 @@ class StoredPhotons:
             "StoredPhotons": self.numbers,
             "PhotonOrigins": self.photon_origins,
             "PhotonGroups": self.groups,
+            ITERATION: self.iteration_block,
         }
 
 
@@ -152,12 +139,6 @@ class TakingImportons:
     """Where first hits lie on the camera's raster."""
     center: np.ndarray
     """Of the splat cubemap for all others, (3,) meters, which changes no sum."""
-    max_bounces: int = UNLIMITED_BOUNCES
-    """Most bounces of photon and importon together."""
-    transparent_max_bounces: int = UNLIMITED_BOUNCES
-    """Transparent surfaces that both have passed, likewise."""
-    camera_bounces: int = UNLIMITED_BOUNCES
-    """Caustics of the world by up to so many bounces of both are found by gathering rays as well, if there are any."""
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
         """That the narrow radii of these importons do not exceed, meters."""
@@ -166,15 +147,3 @@ class TakingImportons:
     def least_radius(self, photons: StoredPhotons) -> float:
         """That the least radii of these importons do not exceed, meters."""
         return photons.radii.by_ray if self.by_ray else photons.radii.narrow
-
-    def parameters(self, photons: StoredPhotons) -> dict[str, object]:
-        """Values of ESTIMATE_PARAMETERS."""
-        return {
-            "wide_radius": photons.radii.wide,
-            "photon_flux": photons.photon_flux,
-            "direct_world_flux": photons.direct_world_flux,
-            "max_bounces": self.max_bounces,
-            "transparent_max_bounces": self.transparent_max_bounces,
-            "camera_bounces": self.camera_bounces,
-            "limits_bounces": photons.limits_bounces,
-        }

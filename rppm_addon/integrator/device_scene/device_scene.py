@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.programs import ITERATION, Bindable, ProgramLibrary
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh
@@ -25,6 +25,7 @@ from ..surfaces.resolve import Resolve
 from .acceleration import Acceleration
 from .centering import Centering
 from .changes import Changes, changes_between, snapshot
+from .iteration_parameters import IterationBlock
 from .shutter import moment, swept_bounds
 from .stage_context import StageContext
 
@@ -43,6 +44,7 @@ class DeviceScene:
         self.lights = Lights(context, library)
         self.acceleration = Acceleration(context, library)
         self.resolve = Resolve(context, library)
+        self.iteration_block = IterationBlock(context, library)
         self.centering = Centering()
         self.scene: Scene | None = None
         """Centered and displaced; with a shutter, as it is at the iteration's moment."""
@@ -74,6 +76,7 @@ class DeviceScene:
             self.acceleration.center,
             self.resolve,
             self._timers,
+            self.iteration_block,
             self._blocks,
         )
 
@@ -86,6 +89,7 @@ class DeviceScene:
             **self.resolve.blocks,
             **self.lights.blocks,
             **self.acceleration.structure.traversal_buffers,
+            ITERATION: self.iteration_block.buffer,
         }
 
     def forget(self) -> None:
@@ -223,9 +227,10 @@ class DeviceScene:
             "scene": self.geometry.memory_bytes | self.materials.memory_bytes | self.lights.memory_bytes,
             "acceleration structure": self.acceleration.memory_bytes,
             "resolve": self.resolve.memory_bytes,
+            "iteration": self.iteration_block.memory_bytes,
         }
 
     def release(self) -> None:
         """Give all buffers back."""
-        for part in (self.geometry, self.materials, self.lights, self.acceleration, self.resolve):
+        for part in (self.geometry, self.materials, self.lights, self.acceleration, self.resolve, self.iteration_block):
             part.release()

@@ -13,9 +13,11 @@ from ...materials.tables import MaterialTables
 from ...scene.scene import Scene
 from ...scene.settings import RenderSettings
 from ..acceleration.acceleration_structure import AccelerationStructure
+from ..common.iteration import Iteration
 from ..lights.lights import Lights
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
+from .iteration_parameters import IterationBlock
 
 
 @dataclass(frozen=True)
@@ -32,8 +34,13 @@ class StageContext:
     """Of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
     resolve: Resolve
     timers: StageTimers
+    iteration_block: IterationBlock
     blocks: Mapping[str, Bindable]
     """Storage blocks and textures of the scene, and of the stages once with_blocks has added them, by name."""
+
+    def begin(self, iteration: Iteration) -> None:
+        """Have programs read the parameters of an iteration, but for its radii."""
+        self.iteration_block.write(self.scene, self.geometry, self.lights, iteration)
 
     def with_blocks(self, blocks: Mapping[str, Bindable]) -> "StageContext":
         """The same context, in which stages find more storage blocks."""

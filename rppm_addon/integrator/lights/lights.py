@@ -16,7 +16,6 @@ from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
-from ..common.iteration import Iteration
 from ..common.known import known
 from ..common.records import (
     LIGHT,
@@ -65,9 +64,6 @@ LIGHT_PARAMETERS = {
     "links_lights": "uint",
     "world_visibility": "uint",
     "world_bounces": "uint",
-    "seed": "uint",
-    "iteration": "uint",
-    "direct_world_flux": "float",
 }
 """Parameters of every program that includes shaders/lights/lights.glsl. ``gathers_lights``: whether gathering rays
 share lights with shadow rays (shadows_are_of_all); ``world_selection`` is the probability of choosing the world for
@@ -131,7 +127,8 @@ class Lights(BufferSet):
         self._first_powers = np.zeros(0)
         """When what is learned began, as for weights: lights that move share photons alike at all times, so that
         a render that goes on does as well. The last is what leaves through portals, where there are any."""
-        self._parameters: dict[str, object] = {}
+        self.parameters: dict[str, object] = {}
+        """Values of LIGHT_PARAMETERS."""
         self._triangles: moderngl.Buffer | None = None
         self.has_falloff = False
         self.are_cut = False
@@ -153,11 +150,6 @@ class Lights(BufferSet):
     def portals(self) -> Portals:
         """Those of the scene, once it was built."""
         return known(self._portals)
-
-    @property
-    def table_buffer(self) -> moderngl.Buffer:
-        """The storage block Lights: a LIGHT record for each light."""
-        return self._lights.buffer
 
     @property
     def blocks(self) -> dict[str, Bindable]:
@@ -188,15 +180,6 @@ class Lights(BufferSet):
         for name, value in zip(self._names, values):
             sums[name] = sums.get(name, 0) + value
         return sums
-
-    def parameters(self, iteration: Iteration) -> dict[str, object]:
-        """Values of LIGHT_PARAMETERS."""
-        return {
-            **self._parameters,
-            "seed": iteration.seed,
-            "iteration": iteration.number,
-            "direct_world_flux": iteration.direct_world_flux,
-        }
 
     def build(
         self,
@@ -316,7 +299,7 @@ class Lights(BufferSet):
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
         self._light_tree.build(table, self.emitters.leaves, self.emitters.order, sets)
         self.emitters.leaves = LIGHT_NODE.zeros(0)  # as large as the triangles themselves
-        self._parameters = {
+        self.parameters = {
             "scene_center": geometry.center,
             "scene_radius": radius,
             "world_radiance": self.environment.radiance,

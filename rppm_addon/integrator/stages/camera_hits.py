@@ -5,7 +5,6 @@ import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
 from ..common.band import Band
-from ..common.iteration import Iteration
 from ..common.records import CAMERA_VIEW
 from ..common.stage import Stage
 from ..density_estimation.stored_photons import CameraRaster
@@ -23,8 +22,6 @@ class CameraHits(Stage):
         """Where the band's first hits lie, for photons to be splatted onto; None where they lie on no raster."""
         raise NotImplementedError
 
-    def find(
-        self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration
-    ) -> None:
+    def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
         raise NotImplementedError

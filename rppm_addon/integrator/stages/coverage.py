@@ -5,12 +5,10 @@ from ...gl.constants import Constants
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
-from ..common.iteration import Iteration
-from ..density_estimation.radii import Radii
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
-Record("CoverageParameters", seed="uint", iteration="uint", segment="uint", first_pixel="uint", wide_radius="float")
+Record("CoverageParameters", segment="uint", first_pixel="uint")
 
 MOST_PROBES = 8
 """Points of a disk that are looked at; of disks with less surface photons stay too dark."""
@@ -24,9 +22,7 @@ class Coverage:
     def __init__(self, library: ProgramLibrary) -> None:
         self._library = library
 
-    def probe(
-        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int, radii: Radii
-    ) -> None:
+    def probe(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Of the importons that the living paths have just left."""
         if not context.gathers or segment == 0:
             return
@@ -36,11 +32,5 @@ class Coverage:
             importons.living.run(
                 program,
                 {**context.blocks, **importons.lit_blocks},
-                {
-                    "seed": iteration.seed,
-                    "iteration": iteration.number,
-                    "segment": segment,
-                    "first_pixel": band.first_pixel,
-                    "wide_radius": radii.splats.wide,
-                },
+                {"segment": segment, "first_pixel": band.first_pixel},
             )

@@ -25,14 +25,12 @@ from ...scene.cryptomatte import (
 from ...scene.passes import CRYPTOMATTE_PAIRS
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
-from ..common.iteration import Iteration
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
 Record(
     "CryptomatteParameters",
-    iteration="uint",
     segment="uint",
     pair_count="uint",
     names="uint",
@@ -86,7 +84,7 @@ class Cryptomatte(BufferSet):
         self._known: dict[str, list[str]] = {}
         """By layer, the names whose identifiers lie on the device."""
 
-    def add(self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int) -> None:
+    def add(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Add the surfaces that the camera paths of a band have come to in a segment, before they scatter on."""
         if self._program is None:
             return
@@ -104,7 +102,6 @@ class Cryptomatte(BufferSet):
                     "Pairs": pairs.of(band),
                 },
                 {
-                    "iteration": iteration.number_in_film,
                     "segment": segment,
                     "pair_count": CRYPTOMATTE_PAIRS * len(entries),
                     "names": _Names.OF_MATERIALS if layer == MATERIALS else _Names.OF_INSTANCES,

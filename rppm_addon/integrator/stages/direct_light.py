@@ -16,29 +16,19 @@ from ..common.living_paths import PathList
 from ..common.records import CLOSURE, HIT, LIGHT_SPLIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
-from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..device_scene.stage_context import StageContext
-from ..lights.lights import LIGHT_PARAMETERS
 from .importons import Importons
 
 Record(
     "DirectLightParameters",
-    **LIGHT_PARAMETERS,
-    **RADIUS_PARAMETERS,
     segment="uint",
     first_pixel="uint",
-    camera_bounces="uint",
-    transparent_max_bounces="uint",
-    specular_alpha="float",
-    final_gather="uint",
-    gathers_again_below="float",
-    has_round_shapes="uint",
     light_sample="uint",
     sample_weight="float",
     splits_light="uint",
 )
 
-Record("PassSurfaceParameters", passed="uint", transparent_max_bounces="uint")
+Record("PassSurfaceParameters", passed="uint")
 
 _SURFACES_AT_ONCE = 16
 """A GPU is asked whether any shadow ray passes surfaces still this seldom, as it has to be waited for."""
@@ -80,7 +70,6 @@ class DirectLight(Stage):
         band: Band,
         iteration: Iteration,
         segment: int,
-        radii: Radii,
     ) -> None:
         """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
         their gathering rays found.
@@ -92,7 +81,7 @@ class DirectLight(Stage):
             return
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):
-                self._sample_lights(context, importons, band, iteration, segment, radii, ray)
+                self._sample_lights(context, importons, band, iteration, segment, ray)
                 living = self.living_rays
                 living.take(importons.living, self._rays.buffer)
                 if living.known_empty:
@@ -147,7 +136,7 @@ class DirectLight(Stage):
             if passing.known_empty:
                 return
             context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
-            passing.run(self._pass, blocks, {"passed": surfaces, "transparent_max_bounces": most})
+            passing.run(self._pass, blocks, {"passed": surfaces})
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
@@ -163,7 +152,6 @@ class DirectLight(Stage):
         band: Band,
         iteration: Iteration,
         segment: int,
-        radii: Radii,
         ray: int,
     ) -> None:
         """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
@@ -171,16 +159,8 @@ class DirectLight(Stage):
             self._sample,
             {**context.blocks, **importons.lit_blocks, **self.blocks},
             {
-                **context.lights.parameters(iteration),
-                **radii.parameters,
                 "segment": segment,
-                "camera_bounces": context.settings.camera_bounces,
-                "transparent_max_bounces": context.settings.transparent_max_bounces,
                 "first_pixel": band.first_pixel,
-                "specular_alpha": context.settings.specular_roughness**2,
-                "final_gather": context.settings.use_final_gather,
-                "gathers_again_below": radii.corner,
-                "has_round_shapes": context.geometry.has_round_shapes,
                 "light_sample": (iteration.number - 1) * iteration.shadow_rays + ray,
                 "sample_weight": 1.0 / iteration.shadow_rays,
                 "splits_light": self._splits_light,

@@ -27,7 +27,6 @@ from .motion_vectors import MotionVectors
 
 Record(
     "PassParameters",
-    iteration="uint",
     segment="uint",
     pixels="uint",
     passes="uint",
@@ -37,8 +36,8 @@ Record(
     mist_exponent="float",
     world_origin="vec3",
 )
-Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", iteration="uint", is_filtered="uint")
-Record("AovParameters", count="uint", iteration="uint")
+Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", is_filtered="uint")
+Record("AovParameters", count="uint")
 StorageBlock("Film", "vec4 film[];")
 StorageBlock("PhotonLight", "vec4 photon_light[];")
 """Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
@@ -141,7 +140,7 @@ class Film(Stage):
         """Add the first surfaces that the camera paths of a band have found in a segment."""
         if not iteration.enters_film:
             return
-        self._cryptomatte.add(context, importons, band, iteration, segment)
+        self._cryptomatte.add(context, importons, band, segment)
         if not self._looks:
             return
         self._motion_vectors.add(context, importons, self._counts.of(band), band, iteration, segment)
@@ -153,7 +152,7 @@ class Film(Stage):
                 **self.pass_blocks(band),
                 "PassCounts": self._counts.of(band),
             },
-            self._parameters(context, band, iteration, segment),
+            self._parameters(context, band, segment),
         )
 
     def add_caught_shadows(
@@ -171,7 +170,7 @@ class Film(Stage):
         importons.living.run(
             self._caught_shadows,
             {**context.blocks, **importons.blocks, **self.pass_blocks(band)},
-            self._parameters(context, band, iteration, segment),
+            self._parameters(context, band, segment),
         )
 
     def add_seen_light(
@@ -182,8 +181,8 @@ class Film(Stage):
             return
         importons.living.run(
             self._seen_light,
-            {**importons.blocks, **self.pass_blocks(band)},
-            self._parameters(context, band, iteration, segment),
+            {**context.blocks, **importons.blocks, **self.pass_blocks(band)},
+            self._parameters(context, band, segment),
         )
 
     def pass_blocks(self, band: Band) -> dict[str, Bindable]:
@@ -194,18 +193,17 @@ class Film(Stage):
         """GroupValues of a band."""
         return self._group_values.of(band)
 
-    def place_parameters(self, band: Band, iteration: Iteration) -> dict[str, float]:
+    def place_parameters(self, band: Band) -> dict[str, float]:
         """Their parameters."""
         return {
-            "iteration": iteration.number_in_film,
             "pixels": band.pixel_count,
             "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
         }
 
-    def _parameters(self, context: StageContext, band: Band, iteration: Iteration, segment: int) -> dict[str, object]:
+    def _parameters(self, context: StageContext, band: Band, segment: int) -> dict[str, object]:
         mist = context.scene.world.mist
         return {
-            **self.place_parameters(band, iteration),
+            **self.place_parameters(band),
             "segment": segment,
             "keeps_paths": self._seen_light is not None,
             "mist_start": mist.start,
@@ -214,14 +212,13 @@ class Film(Stage):
             "world_origin": context.scene.world_offset,
         }
 
-    def accumulate(
-        self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band, iteration: Iteration
-    ) -> None:
+    def accumulate(self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band) -> None:
         """Add the band's estimate of an iteration."""
         with context.timers.stage("film"):
             self._accumulate.run(
                 band.pixel_count,
                 {
+                    **context.blocks,
                     **sums.blocks,
                     "Radiances": radiances.buffer,
                     "Film": self._radiance.of(band),
@@ -231,19 +228,18 @@ class Film(Stage):
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
                     "first_pixel": self._radiance.first_pixel(band),
-                    "iteration": iteration.number_in_film,
                     "is_filtered": self._is_filtered,
                 },
             )
 
-    def add_aovs(self, importons: Importons, band: Band, iteration: Iteration) -> None:
+    def add_aovs(self, context: StageContext, importons: Importons, band: Band) -> None:
         """Add what AOV Output nodes have written of the camera paths of a band."""
         if self._accumulate_aovs is not None:
             count = band.pixel_count * self._aov_channels
             self._accumulate_aovs.run(
                 count,
-                {**importons.blocks, "FilmAovs": self._aov_values.of(band)},
-                {"count": count, "iteration": iteration.number_in_film},
+                {**context.blocks, **importons.blocks, "FilmAovs": self._aov_values.of(band)},
+                {"count": count},
             )
 
     @property

@@ -16,7 +16,6 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
-from ..common.iteration import Iteration
 from ..common.records import GATHERING_VERTEX
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
@@ -33,7 +32,6 @@ Record(
     taps="uint",
     radius_in_pixels="float",
     shared_radius="float",
-    seed="uint",
 )
 
 _MOST_TAPS = 48
@@ -65,7 +63,6 @@ class FinalGather(Stage):
         sums: SplatSums,
         radiances: GrowingBuffer,
         band: Band,
-        iteration: Iteration,
         radii: Radii,
     ) -> None:
         """Add what the gathering rays found to the ``radiances`` of the pixels that they left from and of those around.
@@ -80,16 +77,16 @@ class FinalGather(Stage):
                 {**sums.blocks, **self.blocks},
                 {"count": band.pixel_count, "quantum": sums.quantum},
             )
-            self.share_found(self.radiances.buffer, radiances.buffer, band, iteration, radii)
+            self.share_found(context, self.radiances.buffer, radiances.buffer, band, radii)
 
     def share_found(
-        self, found: moderngl.Buffer, radiances: moderngl.Buffer, band: Band, iteration: Iteration, radii: Radii
+        self, context: StageContext, found: moderngl.Buffer, radiances: moderngl.Buffer, band: Band, radii: Radii
     ) -> None:
         """Add what gathering rays found (vec4 each), or a part of that, to the ``radiances`` (vec4) of those pixels."""
         radius = SHARED_RADIUS * radii.in_pixels
         self._share_program.run(
             band.pixel_count,
-            {**self.blocks, "FoundRadiances": found, "Radiances": radiances},
+            {**context.blocks, **self.blocks, "FoundRadiances": found, "Radiances": radiances},
             {
                 "count": band.pixel_count,
                 "width": band.columns,
@@ -97,6 +94,5 @@ class FinalGather(Stage):
                 "taps": min(_MOST_TAPS, math.ceil(math.pi * radius**2)) if radius >= 0.5 else 0,
                 "radius_in_pixels": radius,
                 "shared_radius": SHARED_RADIUS,
-                "seed": iteration.seed,
             },
         )

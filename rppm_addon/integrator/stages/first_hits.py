@@ -127,7 +127,6 @@ class FirstHits(BufferSet):
         if route is FirstPhotonHits.TRACED:
             context.acceleration.trace(rays, hits, living)
             return
-        lights = context.lights.table_buffer
-        known(self._gbuffer).find(lights, context.geometry, rays, hits, living.most, self._left)
+        known(self._gbuffer).find(context.blocks, rays, hits, living.most, self._left)
         if not self._left.known_empty:
             context.acceleration.trace(rays, hits, self._left)

@@ -78,9 +78,7 @@ class GBuffer(CameraHits):
         """Where the band's first hits lie, for photons to be splatted onto."""
         return CameraRaster(self.camera.buffer, band.columns, band.rows)
 
-    def find(
-        self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration
-    ) -> None:
+    def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
         geometry = context.geometry
         with context.timers.stage("gbuffer"):

@@ -7,35 +7,17 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
-from ...scene.settings import DirectLight
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
 from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, exiting_pixels
-from ..density_estimation.radii import RADIUS_PARAMETERS, Radii
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons
 from ..device_scene.stage_context import StageContext
-from ..lights.lights import LIGHT_PARAMETERS
 from ..surfaces.resolve import CameraPaths
 
-Record(
-    "ScatterImportonsParameters",
-    **LIGHT_PARAMETERS,
-    segment="uint",
-    camera_bounces="uint",
-    transparent_max_bounces="uint",
-    first_pixel="uint",
-    film_transparent="uint",
-    next_event="uint",
-    final_gather="uint",
-    specular_alpha="float",
-    **RADIUS_PARAMETERS,
-    gathers_again_below="float",
-    has_round_shapes="uint",
-    photon_flux="float",
-)
+Record("ScatterImportonsParameters", segment="uint", first_pixel="uint")
 
 
 def _band_aovs(sizes: StageSizes) -> int:
@@ -103,35 +85,13 @@ class Importons(Stage):
                 camera_paths=CameraPaths(self.paths.buffer, self.aovs.buffer),
             )
 
-    def scatter(
-        self,
-        context: StageContext,
-        band: Band,
-        iteration: Iteration,
-        segment: int,
-        radii: Radii,
-    ) -> None:
+    def scatter(self, context: StageContext, band: Band, segment: int) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
-        settings, lights = context.settings, context.lights
         with context.timers.stage("camera scattering"):
             self.living.run(
                 self._scatter,
                 {**context.blocks, **self.lit_blocks},
-                {
-                    **lights.parameters(iteration),
-                    "segment": segment,
-                    "camera_bounces": settings.camera_bounces,
-                    "transparent_max_bounces": settings.transparent_max_bounces,
-                    "first_pixel": band.first_pixel,
-                    "film_transparent": settings.film_transparent,
-                    "next_event": settings.direct_light is DirectLight.RAYS,
-                    "final_gather": settings.use_final_gather,
-                    "specular_alpha": settings.specular_roughness**2,
-                    **radii.parameters,
-                    "gathers_again_below": radii.corner,
-                    "has_round_shapes": context.geometry.has_round_shapes,
-                    "photon_flux": lights.photon_flux,
-                },
+                {"segment": segment, "first_pixel": band.first_pixel},
             )
 
     def taking(self, context: StageContext, segment: int, raster: CameraRaster | None) -> TakingImportons:
@@ -143,9 +103,6 @@ class Importons(Stage):
             by_ray=segment > 0 and context.gathers,
             raster=raster,
             center=context.center,
-            max_bounces=context.settings.max_bounces,
-            transparent_max_bounces=context.settings.transparent_max_bounces,
-            camera_bounces=context.settings.camera_bounces,
         )
 
     def footprints(self, count: int) -> np.ndarray:

@@ -13,13 +13,14 @@ extent and suns' disks.
 """
 
 import math
+from collections.abc import Mapping
 
 import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import DrawProgram, ProgramLibrary
+from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.known import known
@@ -51,7 +52,7 @@ Record(
     columns="uint",
     rows="uint",
 )
-Record("FirstHitsParameters", side="uint", light_count="uint", count="uint")
+Record("FirstHitsParameters", side="uint", count="uint")
 
 LIGHT_TEXEL = Record("LightTexel", depth_complement="uint", count="uint", end="uint")
 """Complement of the bits of the depth where its first triangle ends, 0 where there is none; how many triangles begin
@@ -148,14 +149,13 @@ class LightGBuffer(BufferSet):
         self._first_hits = library.compute("light_gbuffer/first_hits.comp")
         self._framebuffer: moderngl.Framebuffer | None = None
         self._parameters: dict[str, int] = {}
-        self._light_count = self._side = 0
+        self._side = 0
 
     def build(self, lights: np.ndarray, scene_center: np.ndarray, scene_radius: float, geometry: Geometry) -> int:
         """Rasterize what the lights (LIGHT records with their photon counts) see; how many views they have.
 
         scene_radius: of the sphere that photons from suns come through, meters. Raises DeviceError.
         """
-        self._light_count = len(lights)
         ranges, found, count = np.zeros((len(lights), 2), np.uint32), [LIGHT_VIEW.zeros(0)], 0
         for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MOST_LIGHTS]:
             views = light_views(lights[index], scene_center, scene_radius)
@@ -219,27 +219,28 @@ class LightGBuffer(BufferSet):
 
     def find(
         self,
-        lights: moderngl.Buffer,
-        geometry: Geometry,
+        blocks: Mapping[str, Bindable],
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         count: int,
         left: LivingPaths,
     ) -> None:
-        """Write the hits (HIT) of photons' rays (RAY) that their texels settle, and list the others in ``left``."""
+        """Write the hits (HIT) of photons' rays (RAY) that their texels settle, and list the others in ``left``.
+
+        blocks: those of the scene (StageContext.blocks).
+        """
         left.begin(count)
         self._first_hits.run(
             count,
             {
-                "Lights": lights,
+                **blocks,
                 "LightViewRanges": self._ranges.buffer,
                 "LightViews": self._views.buffer,
                 "LightTexels": self._texels.buffer,
                 "TexelTriangles": self._triangles.buffer,
-                "Triangles": geometry.triangles.buffer,
                 "Rays": rays,
                 "Hits": hits,
                 "KeptPaths": left.buffer,
             },
-            {"side": self._side, "light_count": self._light_count, "count": count},
+            {"side": self._side, "count": count},
         )

@@ -18,7 +18,6 @@ from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
-from ..lights.lights import LIGHT_PARAMETERS
 from .direct_light import DirectLight
 from .film import Film
 from .final_gather import FinalGather
@@ -27,14 +26,11 @@ from .importons import Importons
 Record(
     "LightGroupParameters",
     groups="uint",
-    light_count="uint",
-    world_group="uint",
     group="uint",
     count="uint",
-    iteration="uint",
     quantum="float",
 )
-Record("PassedLightParameters", **LIGHT_PARAMETERS, groups="uint", next_event="uint")
+Record("PassedLightParameters", groups="uint")
 StorageBlock("GroupedLight", "float grouped_light[];")
 StorageBlock("SeenLight", "vec4 seen_light[];")
 
@@ -81,22 +77,17 @@ class LightGroups(Stage):
         """What DirectLight.add has added, and light objects that the paths pass, before they scatter on."""
         if not (self._groups and iteration.enters_film):
             return
-        lights = context.lights
         with context.timers.stage("light groups"):
             if context.settings.direct_light is DirectLightMode.RAYS:
                 direct_light.living_rays.run(
                     self._programs["direct"],
                     {**context.blocks, **direct_light.blocks, **self.blocks},
-                    self._parameters(context),
+                    self._parameters(),
                 )
             importons.living.run(
                 self._programs["passed"],
                 {**context.blocks, **importons.blocks, **self.blocks},
-                {
-                    **lights.parameters(iteration),
-                    "groups": self._groups,
-                    "next_event": context.settings.direct_light is DirectLightMode.RAYS,
-                },
+                {"groups": self._groups},
             )
 
     def add_seen_light(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
@@ -107,7 +98,7 @@ class LightGroups(Stage):
             importons.living.run(
                 self._programs["seen"],
                 {**context.blocks, **importons.blocks, **self.blocks},
-                self._parameters(context),
+                self._parameters(),
             )
 
     def accumulate(
@@ -117,39 +108,34 @@ class LightGroups(Stage):
         sums: SplatSums,
         film: Film,
         band: Band,
-        iteration: Iteration,
         radii: Radii,
     ) -> None:
         """Add the band's estimate of an iteration to the film's passes, with what photons and gathering rays bring."""
         if not self._groups:
             return
         with context.timers.stage("light groups"):
-            light = {**sums.blocks, **self.blocks}
+            light = {**context.blocks, **sums.blocks, **self.blocks}
             for group in range(self._groups):
-                parameters = self._parameters(context) | {
+                parameters = self._parameters() | {
                     "group": group,
                     "count": band.pixel_count,
-                    "iteration": iteration.number_in_film,
                     "quantum": sums.quantum,
                 }
                 self._taken.clear()
                 if context.gathers:
                     found = {**final_gather.blocks, "FoundRadiances": self._found.buffer}
                     self._programs["found"].run(band.pixel_count, {**light, **found}, parameters)
-                    final_gather.share_found(self._found.buffer, self._taken.buffer, band, iteration, radii)
+                    final_gather.share_found(context, self._found.buffer, self._taken.buffer, band, radii)
                 self._programs["accumulate"].run(
                     band.pixel_count,
                     {**light, "Radiances": self._taken.buffer, "GroupValues": film.group_values(band)},
                     parameters,
                 )
 
-    def _parameters(self, context: StageContext) -> dict[str, float]:
+    def _parameters(self) -> dict[str, float]:
         return {
             "groups": self._groups,
-            "light_count": len(context.lights.table),
-            "world_group": context.lights.world_group,
             "group": 0,
             "count": 0,
-            "iteration": 0,
             "quantum": 0.0,
         }

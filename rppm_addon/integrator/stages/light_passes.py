@@ -30,7 +30,6 @@ from .importons import Importons
 
 Record(
     "LightPassParameters",
-    iteration="uint",
     segment="uint",
     pixels="uint",
     passes="uint",
@@ -102,8 +101,8 @@ class LightPasses(Stage):
         with context.timers.stage("light passes"):
             direct_light.living_rays.run(
                 self._programs["direct"],
-                {**importons.blocks, **direct_light.blocks, **self.blocks, **film.pass_blocks(band)},
-                self._parameters(film, band, iteration, segment),
+                {**context.blocks, **importons.blocks, **direct_light.blocks, **self.blocks, **film.pass_blocks(band)},
+                self._parameters(film, band, segment),
             )
 
     def add_indirect_light(
@@ -114,22 +113,22 @@ class LightPasses(Stage):
         sums: SplatSums,
         film: Film,
         band: Band,
-        iteration: Iteration,
         radii: Radii,
     ) -> None:
         """What FinalGather.share has added, and what photons have."""
         if not self._kept:
             return
         with context.timers.stage("light passes"):
-            parameters = self._parameters(film, band, iteration) | {"quantum": sums.quantum}
-            self._programs["photons"].run(band.pixel_count, {**sums.blocks, **film.pass_blocks(band)}, parameters)
+            parameters = self._parameters(film, band) | {"quantum": sums.quantum}
+            light = {**context.blocks, **sums.blocks, **film.pass_blocks(band)}
+            self._programs["photons"].run(band.pixel_count, light, parameters)
             if not context.gathers:
                 return
-            blocks = {**importons.blocks, **final_gather.blocks, **sums.blocks, **self.blocks}
+            blocks = {**context.blocks, **importons.blocks, **final_gather.blocks, **sums.blocks, **self.blocks}
             self._programs["found"].run(band.pixel_count, blocks, parameters)
             for part, found in self._parts(final_gather).items():
                 self._taken.clear()
-                final_gather.share_found(found, self._taken.buffer, band, iteration, radii)
+                final_gather.share_found(context, found, self._taken.buffer, band, radii)
                 self._programs["gathered"].run(
                     band.pixel_count,
                     {**blocks, **film.pass_blocks(band), "Radiances": self._taken.buffer},
@@ -145,9 +144,9 @@ class LightPasses(Stage):
             parts[_Gathered.CAUSTICS] = self._found_caustics.buffer
         return parts
 
-    def _parameters(self, film: Film, band: Band, iteration: Iteration, segment: int = 0) -> dict[str, float]:
+    def _parameters(self, film: Film, band: Band, segment: int = 0) -> dict[str, float]:
         return {
-            **film.place_parameters(band, iteration),
+            **film.place_parameters(band),
             "segment": segment,
             "count": band.pixel_count,
             "scattered": LightSum.SCATTERED in self._kept,

@@ -23,8 +23,8 @@ MEDIUM_BOX = Record("MediumBox", low="vec3", unused0="uint", high="vec3", unused
 StorageBlock("MediumBoxes", "MediumBox medium_boxes[];")
 StorageBlock("MediaOfSources", "uint media_of_sources[];")
 """The media at the middle of each light, and at the camera, as paths carry them."""
-Record("FindMediaParameters", camera_position="vec3", light_count="uint", box_count="uint")
-Record("EnterMediaParameters", camera_position="vec3", light_count="uint", box_count="uint", has_camera="uint")
+Record("FindMediaParameters", camera_position="vec3", box_count="uint")
+Record("EnterMediaParameters", camera_position="vec3", box_count="uint", has_camera="uint")
 
 _MOST_BOXES = 32
 """Boxes that points are looked for in; what is more lies in the last together."""
@@ -86,7 +86,7 @@ class Media(Stage):
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))
-        return {"camera_position": position, "light_count": len(context.lights.table), "box_count": self._box_count}
+        return {"camera_position": position, "box_count": self._box_count}
 
 
 def _boxes(scene: Scene, materials: frozenset[int]) -> np.ndarray:

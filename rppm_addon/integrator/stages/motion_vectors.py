@@ -29,7 +29,6 @@ Record(
     **{f"world_to_camera{when}": "mat4" for when in _CAMERAS},
     **{f"window{when}": "vec4" for when in _CAMERAS},
     resolution="vec2",
-    iteration="uint",
     segment="uint",
 )
 
@@ -90,7 +89,6 @@ class MotionVectors(BufferSet):
                 **{f"world_to_camera{when}": np.linalg.inv(seen.matrix) for when, seen in cameras.items()},
                 **{f"window{when}": seen.window for when, seen in cameras.items()},
                 "resolution": (camera.width, camera.height),
-                "iteration": iteration.number_in_film,
                 "segment": segment,
             },
         )

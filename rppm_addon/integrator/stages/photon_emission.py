@@ -5,15 +5,11 @@ from collections.abc import Mapping
 
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
-from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths
 from ..device_scene.stage_context import StageContext
-from ..lights.lights import LIGHT_PARAMETERS
 
-Record("EmitParameters", **LIGHT_PARAMETERS, count="uint", target_count="uint")
-Record("FalloffParameters", **LIGHT_PARAMETERS, count="uint")
-Record("CutParameters", light_count="uint")
-Record("PortalPassedParameters", **LIGHT_PARAMETERS)
+Record("EmitParameters", count="uint", target_count="uint")
+Record("FalloffParameters", count="uint")
 
 
 class PhotonEmission:
@@ -24,35 +20,28 @@ class PhotonEmission:
         self._falloff = library.compute("photon_emission/falloff.comp")
         self._library = library
 
-    def emit(self, context: StageContext, photons: Mapping[str, Bindable], count: int, iteration: Iteration) -> None:
+    def emit(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:
         """Emit ``count`` photons: their first rays, the flux they carry, what the world is like there, and how their
         neighbors leave.
 
         photons: storage blocks of the photons (Photons.blocks), as for the other programs.
         """
-        lights = context.lights
         self._emit.run(
             count,
             {**context.blocks, **photons},
-            {**lights.parameters(iteration), "count": count, "target_count": lights.target_count},
+            {"count": count, "target_count": context.lights.target_count},
         )
 
-    def apply_falloff(
-        self, context: StageContext, photons: Mapping[str, Bindable], count: int, iteration: Iteration
-    ) -> None:
+    def apply_falloff(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:
         """Where photons hit first: end those that a soft light does not send there, and let the distance count."""
-        self._falloff.run(
-            count, {**context.blocks, **photons}, {**context.lights.parameters(iteration), "count": count}
-        )
+        self._falloff.run(count, {**context.blocks, **photons}, {"count": count})
 
     def cut_soft_lights(self, context: StageContext, photons: Mapping[str, Bindable], living: LivingPaths) -> None:
         """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
         program = self._library.compute("photon_emission/cut.comp", context.acceleration.traversal_defines)
-        living.run(program, {**context.blocks, **photons}, {"light_count": len(context.lights.table)})
+        living.run(program, {**context.blocks, **photons})
 
-    def leave_to_shadow_rays(
-        self, context: StageContext, photons: Mapping[str, Bindable], living: LivingPaths, iteration: Iteration
-    ) -> None:
+    def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], living: LivingPaths) -> None:
         """Where direct photons hit: mark those that came through a portal, whose light shadow rays bring."""
         program = self._library.compute("photon_emission/portal_passed.comp", {"PORTALS": 1})
-        living.run(program, {**context.blocks, **photons}, context.lights.parameters(iteration))
+        living.run(program, {**context.blocks, **photons})

@@ -10,7 +10,7 @@ from ...gl.records import Record
 from ..common.stage_sizes import StageSizes, grouped_photons
 from ..device_scene.stage_context import StageContext
 
-Record("PhotonGroupParameters", count="uint", light_count="uint")
+Record("PhotonGroupParameters", count="uint")
 
 
 class PhotonGroups(BufferSet):
@@ -27,9 +27,8 @@ class PhotonGroups(BufferSet):
         """Take the groups of so many photons, whose rays (RAY) have just left the lights."""
         if self._find is None:
             return
-        lights = context.lights
         self._find.run(
             photons,
             {**context.blocks, **self.blocks, "Rays": rays},
-            {"count": photons, "light_count": len(lights.table)},
+            {"count": photons},
         )

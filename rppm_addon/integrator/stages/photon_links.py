@@ -11,7 +11,7 @@ from ..common.living_paths import LivingPaths
 from ..common.stage_sizes import StageSizes, linked_photons
 from ..device_scene.stage_context import StageContext
 
-Record("PhotonLinkParameters", count="uint", light_count="uint")
+Record("PhotonLinkParameters", count="uint")
 
 
 class PhotonLinks(BufferSet):
@@ -30,11 +30,10 @@ class PhotonLinks(BufferSet):
         """Take the links of so many photons, whose rays (RAY) have just left the lights."""
         if self._find is None:
             return
-        lights = context.lights
         self._find.run(
             photons,
             {**context.blocks, **self.blocks, "Rays": rays},
-            {"count": photons, "light_count": len(lights.table)},
+            {"count": photons},
         )
 
     def link(

@@ -78,7 +78,6 @@ class PhotonNoise(Stage):
         gather: FinalGather,
         sums: SplatSums,
         band: Band,
-        iteration: Iteration,
         radii: Radii,
     ) -> np.ndarray:
         """(rows, columns, 4) float32 luminances of a band's samples, with the film's exposure, for NoiseSamples.of.
@@ -102,7 +101,7 @@ class PhotonNoise(Stage):
                 {**parameters, "count": band.pixel_count},
             )
             if context.gathers:
-                gather.share_found(gather.radiances.buffer, importons.radiances.buffer, band, iteration, radii)
+                gather.share_found(context, gather.radiances.buffer, importons.radiances.buffer, band, radii)
             self._join.run(
                 rows * columns,
                 {**importons.blocks, **self.blocks},

@@ -27,7 +27,7 @@ from ..common.records import (
 )
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
-from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage
+from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from ..density_estimation.stored_photons import DirectPhotons, PhotonList, StoredPhotons
 from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
@@ -40,14 +40,8 @@ Record("BeginSegmentParameters", segment="uint")
 Record(
     "ScatterPhotonsParameters",
     segment="uint",
-    photon_bounces="uint",
-    transparent_max_bounces="uint",
-    seed="uint",
-    iteration="uint",
-    specular_alpha="float",
     has_adjoint_queries="uint",
     footprint_photons="float",
-    shrinkage="float",
 )
 Record("BalanceParameters", photon_count="uint")
 
@@ -103,7 +97,7 @@ class Photons(Stage):
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
             self._living.fill(self.photon_count)
-            self._emission.emit(context, self.blocks, self.photon_count, iteration)
+            self._emission.emit(context, self.blocks, self.photon_count)
             self._groups.find(context, rays, self.photon_count)
             self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
@@ -112,7 +106,7 @@ class Photons(Stage):
         with context.timers.stage("first photon hits"):
             self.first_hits.find(context, rays, hits, self._living)
             if context.lights.has_falloff:
-                self._emission.apply_falloff(context, self.blocks, self.photon_count, iteration)
+                self._emission.apply_falloff(context, self.blocks, self.photon_count)
             if context.lights.are_cut:
                 self._emission.cut_soft_lights(context, self.blocks, self._living)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
@@ -149,24 +143,18 @@ class Photons(Stage):
         with context.timers.stage("photon scattering"):
             self._begin_segment(segment)
             if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
-                self._emission.leave_to_shadow_rays(context, self.blocks, self._living, iteration)
+                self._emission.leave_to_shadow_rays(context, self.blocks, self._living)
             self._living.run(
                 self._scatter,
                 {**context.blocks, **self.blocks},
                 {
                     "segment": segment,
-                    "photon_bounces": context.settings.photon_bounces,
-                    "transparent_max_bounces": context.settings.transparent_max_bounces,
-                    "seed": iteration.seed,
-                    "iteration": iteration.number,
-                    "specular_alpha": context.settings.specular_roughness**2,
                     "has_adjoint_queries": has_adjoint_queries,
                     "footprint_photons": EXPECTED_CAUSTIC_PHOTONS,
-                    "shrinkage": shrinkage(iteration.number, context.settings.alpha),
                 },
             )
         if has_adjoint_queries:
-            subsurface.walk_photons(context, self._living, self.blocks, iteration, segment)
+            subsurface.walk_photons(context, self._living, self.blocks, segment)
             self.resolve(context, iteration, segment, has_adjoint_queries=True)
             with context.timers.stage("photon scattering"):
                 self._living.run(self._adjoint, self.blocks)
@@ -187,7 +175,7 @@ class Photons(Stage):
             listed.collect(self.blocks, self.slots, takes_direct)
         return listed
 
-    def stored(self, context: StageContext, iteration: Iteration, listed: PhotonList, radii: Radii) -> StoredPhotons:
+    def stored(self, context: StageContext, listed: PhotonList, radii: Radii) -> StoredPhotons:
         """Those that are listed, with what their estimate depends on."""
         bounds = context.geometry.bounds_low, context.geometry.bounds_high
         return StoredPhotons(
@@ -200,10 +188,9 @@ class Photons(Stage):
             self.photon_origins.buffer,
             self._groups.groups.buffer,
             context.lights.photon_flux,
-            iteration.direct_world_flux,
             radii.splats,
             float(np.max(np.abs(bounds))),
-            context.lights.limits_bounces,
+            context.iteration_block.buffer,
         )
 
     def flux_balance(self) -> dict[str, float]:

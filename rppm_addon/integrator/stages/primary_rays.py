@@ -7,14 +7,13 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
-from ..common.iteration import Iteration
 from ..common.stage_sizes import StageSizes
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext
 from .camera_hits import CameraHits
 from .importons import Importons
 
-Record("PrimaryRaysParameters", first_pixel="uint", seed="uint", iteration="uint")
+Record("PrimaryRaysParameters", first_pixel="uint")
 
 
 class PrimaryRays(CameraHits):
@@ -30,21 +29,14 @@ class PrimaryRays(CameraHits):
         """CameraHits.raster."""
         return CameraRaster(self.camera.buffer, band.columns, band.rows) if self._is_on_raster else None
 
-    def find(
-        self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration
-    ) -> None:
+    def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
         with context.timers.stage("gbuffer"):
             importons.living.fill(band.pixel_count)
             self.camera.write(view)
             self._rays.run(
                 band.pixel_count,
-                {**importons.blocks, **self.blocks},
-                # The iterations' points start with the first of the set.
-                {
-                    "first_pixel": band.first_pixel,
-                    "seed": iteration.seed,
-                    "iteration": max(iteration.number - 1, 0),
-                },
+                {**context.blocks, **importons.blocks, **self.blocks},
+                {"first_pixel": band.first_pixel},
             )
             importons.find_hits(context)

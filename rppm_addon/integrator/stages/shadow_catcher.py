@@ -6,15 +6,13 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
-from ..common.iteration import Iteration
 from ..common.records import RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
-from ..lights.lights import LIGHT_PARAMETERS
 from .importons import Importons
 
-Record("ShadowCatcherParameters", **LIGHT_PARAMETERS, segment="uint", first_pixel="uint")
+Record("ShadowCatcherParameters", segment="uint", first_pixel="uint")
 
 
 def _catching_pixels(sizes: StageSizes) -> int:
@@ -40,7 +38,7 @@ class ShadowCatcher(Stage):
         super().__init__(context, library, sizes)
         self._program = library.compute("shadow_catcher/cast.comp") if sizes.has_catchers else None
 
-    def cast(self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int) -> None:
+    def cast(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Fill ``lit`` for the resolved vertices of the living camera paths, before they scatter on."""
         if self._program is None:
             return
@@ -48,7 +46,7 @@ class ShadowCatcher(Stage):
             importons.living.run(
                 self._program,
                 {**context.blocks, **importons.blocks, **self.blocks},
-                {**context.lights.parameters(iteration), "segment": segment, "first_pixel": band.first_pixel},
+                {"segment": segment, "first_pixel": band.first_pixel},
             )
             linking = context.lights.linking_blocks(self._links.buffer)
             context.acceleration.occluded(

@@ -8,7 +8,6 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ..common.band import Band
-from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths, PathList
 from ..common.records import HIT, RAY, SUBSURFACE_WALK, RandomStage
 from ..common.stage import Stage
@@ -16,11 +15,9 @@ from ..common.stage_sizes import StageSizes, subsurface_walks
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
-Record("EnterParameters", seed="uint", iteration="uint", segment="uint", first_path="uint")
+Record("EnterParameters", segment="uint", first_path="uint")
 Record(
     "WalkParameters",
-    seed="uint",
-    iteration="uint",
     segment="uint",
     first_path="uint",
     stage="uint",
@@ -55,24 +52,19 @@ class Subsurface(Stage):
             names = ("enter", "leave", "enter_photons", "leave_photons")
             self._programs = {name: library.compute(f"subsurface/{name}.comp") for name in names}
 
-    def walk_camera_paths(
-        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int
-    ) -> None:
+    def walk_camera_paths(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Fill the exit closures of the living camera paths, whose hits are resolved."""
         if not self.is_used:
             return
         with context.timers.stage("camera subsurface"):
             blocks = importons.blocks
-            self._walk(
-                context, importons.living, blocks, ("enter", "leave"), iteration, segment, RandomStage.SUBSURFACE, band
-            )
+            self._walk(context, importons.living, blocks, ("enter", "leave"), segment, RandomStage.SUBSURFACE, band)
 
     def walk_photons(
         self,
         context: StageContext,
         living: LivingPaths,
         blocks: Mapping[str, Bindable],
-        iteration: Iteration,
         segment: int,
     ) -> None:
         """Send living photons that a surface scatters diffusely on from where they come out of it.
@@ -83,7 +75,7 @@ class Subsurface(Stage):
             return
         with context.timers.stage("photon subsurface"):
             programs = ("enter_photons", "leave_photons")
-            self._walk(context, living, blocks, programs, iteration, segment, RandomStage.SUBSURFACE_PHOTONS)
+            self._walk(context, living, blocks, programs, segment, RandomStage.SUBSURFACE_PHOTONS)
 
     def _walk(
         self,
@@ -91,15 +83,12 @@ class Subsurface(Stage):
         living: LivingPaths,
         blocks: Mapping[str, Bindable],
         programs: tuple[str, str],
-        iteration: Iteration,
         segment: int,
         stage: RandomStage,
         band: Band | None = None,
     ) -> None:
         blocks = {**context.blocks, **self.blocks, **blocks}
         parameters = {
-            "seed": iteration.seed,
-            "iteration": iteration.number,
             "segment": segment,
             "first_path": band.first_pixel if band else 0,
         }

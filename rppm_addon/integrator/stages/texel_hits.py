@@ -10,7 +10,6 @@ from ...gl.records import Record
 from ...scene.camera import Camera, Texels
 from ...scene.errors import SceneError
 from ..common.band import Band
-from ..common.iteration import Iteration
 from ..common.records import NO_TRIANGLE
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.stored_photons import CameraRaster
@@ -26,8 +25,6 @@ Record(
     viewer="vec4",
     count="uint",
     first_pixel="uint",
-    seed="uint",
-    iteration="uint",
     straight_down="uint",
     see_environment="uint",
 )
@@ -46,9 +43,7 @@ class TexelHits(CameraHits):
         """None: first hits lie on no raster."""
         return None
 
-    def find(
-        self, context: StageContext, importons: Importons, view: np.ndarray, band: Band, iteration: Iteration
-    ) -> None:
+    def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
         """First rays, hits and camera paths of the texels that ``view`` (CAMERA_VIEW) shows.
 
         Raises SceneError when their object has no triangles.
@@ -68,8 +63,6 @@ class TexelHits(CameraHits):
                     "viewer": texels.viewer or (0.0, 0.0, 0.0, 0.0),
                     "count": band.pixel_count,
                     "first_pixel": band.first_pixel,
-                    "seed": iteration.seed,
-                    "iteration": iteration.number,
                     "straight_down": texels.viewer is None,
                     "see_environment": texels.see_environment,
                 },

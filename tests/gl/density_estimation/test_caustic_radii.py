@@ -6,11 +6,11 @@ import dataclasses
 import numpy as np
 import pytest
 from busy_scenes import busy_room
+from support.iteration_block import iteration_buffer
 from support.render_states import run_until
 
 from rppm_addon.gl.timers import StageTimers
 from rppm_addon.integrator.common import band
-from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.common.records import IMPORTON, GatherFlag
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.caustic_radii import CausticRadii
@@ -48,7 +48,9 @@ def test_disks_shrink_to_what_they_should_hold(context, library, roulette, fract
         for rows in sizes.bands:
             sums.blocks["PhotonCounts"].write(counts[rows.first_row : rows.first_row + rows.rows].tobytes())
             of_iteration = Radii(0.0, 1.0, 1.0, 1.0, most, shrunk)
-            radii.narrow(sums, rows, Iteration(iteration, seed=0), of_iteration, fraction, timers)
+            blocks = {"Iteration": iteration_buffer(context, number=iteration)}
+            radii.narrow(blocks, sums, rows, of_iteration, fraction, timers)
+            blocks["Iteration"].release()
         taken = counts[:, 1] * (2 if roulette else 1) / shrunk**2 / held
         expected *= np.minimum(np.sqrt(EXPECTED_CAUSTIC_PHOTONS / np.maximum(taken, 1.0)), 1.0)
         expected = np.maximum(expected, 1.0)

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.common.living_paths import LivingPaths
@@ -52,12 +53,13 @@ class Device:
         sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, 1)
         sums.clear()
+        iteration = iteration_buffer(self._context, photon_flux=1.0, wide_radius=radii.wide)
         grid = PhotonGrid(self._context, self._library, sizes)
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
             listed.indirect_count,
-            buffers[2].buffer, buffers[2].buffer, 1.0, 0.0, radii,
-            float(np.abs(photons["position"]).max()),
+            buffers[2].buffer, buffers[2].buffer, 1.0, radii,
+            float(np.abs(photons["position"]).max()), iteration,
         )  # fmt: skip
         living = LivingPaths(self._context, self._library, "paths", "take fewer")
         living.fill(len(importons))
@@ -66,7 +68,7 @@ class Device:
         grid.splat(stored, taking, sums)
         contributed = buffers[0].read(PHOTON.dtype, len(photons))["depth"] & PHOTON_CONTRIBUTED != 0
         result = contributed, sums.photons_taken(len(importons))[:, 0], sums.read(len(importons)).any(axis=(1, 2))
-        for part in (*buffers, living, listed, sums, grid):
+        for part in (*buffers, living, listed, sums, grid, iteration):
             part.release()
         return result
 

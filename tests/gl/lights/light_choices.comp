@@ -17,24 +17,24 @@ float told_probability(LightChoice choice, LitPoint point) {
     if (kind == LIGHT_WORLD) return choice.probability;
     if (kind == LIGHT_MESH) {
         leaf = uint(triangle_vertices[3u * emissive_triangles[choice.triangle].triangle + 1u].w);
-        return light_probability(point, parameters.environment_irradiance, KIND_TRIANGLES, leaf);
+        return light_probability(point, iteration.environment_irradiance, KIND_TRIANGLES, leaf);
     }
-    for (uint sun = 0u; sun < parameters.sun_count; ++sun)
-        if (light_nodes[parameters.first_sun + sun].member == choice.light)
-            return light_probability(point, parameters.environment_irradiance, KIND_FIRST_SUN + sun, 0u);
-    for (uint node = parameters.light_tree_leaves; node < 2u * parameters.light_tree_leaves; ++node)
+    for (uint sun = 0u; sun < iteration.sun_count; ++sun)
+        if (light_nodes[iteration.first_sun + sun].member == choice.light)
+            return light_probability(point, iteration.environment_irradiance, KIND_FIRST_SUN + sun, 0u);
+    for (uint node = iteration.light_tree_leaves; node < 2u * iteration.light_tree_leaves; ++node)
         if (light_nodes[node].member == choice.light) leaf = node;
-    return light_probability(point, parameters.environment_irradiance, KIND_OBJECTS, leaf);
+    return light_probability(point, iteration.environment_irradiance, KIND_OBJECTS, leaf);
 }
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
+    RandomSequence random = random_sequence(iteration.seed, 1u, 1u, 0u, index);
     if (parameters.looks_at_lights != 0u) {
         vec3 origin = 4.0 * (vec3(next_random(random), next_random2(random)) - 0.5), direction = sample_sphere(next_random2(random));
         vec3 all = vec3(0.0);
-        for (uint light = 0u; light < parameters.light_count; ++light) {
+        for (uint light = 0u; light < iteration.light_count; ++light) {
             float distance, pdf;
             all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
@@ -47,7 +47,7 @@ void main() {
     // Evenly spaced numbers: each choice gets the part of them that is its probability.
     float u = (float(index) + 0.5) / float(parameters.count);
     LitPoint point = LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u, 0u);
-    LightChoice choice = choose_light_at(point, parameters.environment_irradiance, u, next_random(random));
+    LightChoice choice = choose_light_at(point, iteration.environment_irradiance, u, next_random(random));
     results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(choice.triangle), choice.probability,
                           told_probability(choice, point));
 }

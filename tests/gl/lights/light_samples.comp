@@ -14,7 +14,7 @@ writeonly buffer Results { vec4 results[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
+    RandomSequence random = random_sequence(iteration.seed, 1u, 1u, 0u, index);
     float u_choice = next_random(random);
     LightSample sampled = sample_whole_light(lights[0], parameters.point, u_choice, next_random2(random));
     float distance = 0.0, pdf = 0.0;
@@ -22,7 +22,7 @@ void main() {
     if (sampled.triangle != NO_TRIANGLE) {
         seen = vec3(parameters.emitted);
         pdf = emissive_triangle_pdf(parameters.point, sampled.triangle);
-        for (uint emissive = 0u; emissive < parameters.emissive_triangle_count; ++emissive)
+        for (uint emissive = 0u; emissive < iteration.emissive_triangle_count; ++emissive)
             if (emissive_triangles[emissive].triangle == sampled.triangle) pdf *= emissive_triangles[emissive].share;
     } else if (sampled.distance > 0.0)
         seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);

@@ -15,8 +15,8 @@ writeonly buffer Results { vec4 results[]; };
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    RandomSequence random = random_sequence(parameters.seed, 1u, 1u, 0u, index);
-    LightSample sampled = sample_light(lights[parameters.world_light], 0u, parameters.point, next_random2(random));
+    RandomSequence random = random_sequence(iteration.seed, 1u, 1u, 0u, index);
+    LightSample sampled = sample_light(lights[iteration.world_light], 0u, parameters.point, next_random2(random));
     vec3 even = sample_sphere(next_random2(random));
     results[3u * index] = vec4(sampled.direction, sampled.distance);
     results[3u * index + 1u] = vec4(sampled.weight, sampled.pdf);

@@ -45,7 +45,9 @@ def emitted_moments(mapper, iterations: int) -> np.ndarray:
     for number in range(iterations):
         scene = mapper.scene
         iteration = Iteration(number, scene.settings.seed, scene.photon_count)
-        mapper.stages.photons.emit(mapper.device_scene.context, iteration)
+        context = mapper.device_scene.context
+        context.begin(iteration)
+        mapper.stages.photons.emit(context, iteration)
         count = mapper.stages.photons.photon_count
         flux = mapper.stages.photons._paths.read(PHOTON_PATH.dtype, count)["flux"][:, 0].astype(np.float64)
         rays = mapper.stages.photons._rays.read(RAY.dtype, count)

@@ -12,12 +12,10 @@ from test_light_sources import floor_scene
 
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
-from rppm_addon.integrator.lights.lights import LIGHT_PARAMETERS
 from rppm_addon.scene import DirectLight, Instance, Light, LightKind, World
 
 Record(
     "LightChoicesParameters",
-    **LIGHT_PARAMETERS,
     count="uint",
     point="vec3",
     normal="vec3",
@@ -69,12 +67,13 @@ def crowded_scene(count: int, world: float = 0.1):
 def run(mapper, library, **parameters) -> np.ndarray:
     """(CHOICES, 4) float32 of light_choices.comp."""
     results = mapper.context.moderngl.buffer(reserve=16 * CHOICES)
-    emission = mapper.device_scene.lights
+    context = mapper.device_scene.context
+    context.begin(Iteration(1, seed=3))
     unset = {"point": np.zeros(3), "normal": np.zeros(3), "both_sides": 0, "looks_at_lights": 0, "reach": 0.0}
     library.compute(SHADER).run(
         CHOICES,
-        {**emission.blocks, "Results": results},
-        {**emission.parameters(Iteration(1, seed=3)), "count": CHOICES, **unset, **parameters},
+        {**context.blocks, "Results": results},
+        {"count": CHOICES, **unset, **parameters},
     )
     table = np.frombuffer(results.read(), np.float32).reshape(CHOICES, 4).copy()
     results.release()

@@ -15,12 +15,11 @@ from test_light_sources import floor_scene
 from rppm_addon.gl.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.lights.light_entry import spread_constants
-from rppm_addon.integrator.lights.lights import LIGHT_PARAMETERS
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene
 
 Record("SphericalTriangleParameters", count="uint", samples="uint")
-Record("LightSamplesParameters", **LIGHT_PARAMETERS, count="uint", point="vec3", emitted="float")
+Record("LightSamplesParameters", count="uint", point="vec3", emitted="float")
 FOLDER = Path(__file__).parent
 SAMPLES, PARTS = 1 << 14, 4
 
@@ -167,11 +166,12 @@ def mapper(context, library):
 def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float = 0.0) -> dict[str, np.ndarray]:
     """Samples of the scene's first light from a point: direction, distance, weight, pdf, seen, seen_pdf."""
     results = mapper.context.moderngl.buffer(reserve=48 * count)
+    context = mapper.device_scene.context
+    context.begin(Iteration(1, seed=3))
     library.compute(str(FOLDER / "light_samples.comp")).run(
         count,
-        {**mapper.device_scene.lights.blocks, "Results": results},
+        {**context.blocks, "Results": results},
         {
-            **mapper.device_scene.lights.parameters(Iteration(1, seed=3)),
             "count": count,
             "point": point,
             "emitted": emitted,

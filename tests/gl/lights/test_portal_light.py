@@ -53,9 +53,10 @@ def portal_samples(mapper, library, point) -> tuple[np.ndarray, np.ndarray]:
     """Samples of the world from a point, (n, 8): direction, distance, weight, pdf; and of even directions (n, 4):
     direction, pdf."""
     results = mapper.context.moderngl.buffer(reserve=48 * SAMPLES)
-    lights = mapper.device_scene.lights
-    values = {**lights.parameters(Iteration(1, seed=3)), "count": SAMPLES, "point": point, "emitted": 0.0}
-    blocks = {**lights.blocks, "Results": results}
+    context = mapper.device_scene.context
+    context.begin(Iteration(1, seed=3))
+    values = {"count": SAMPLES, "point": point, "emitted": 0.0}
+    blocks = {**context.blocks, "Results": results}
     library.compute(str(FOLDER / "portal_samples.comp"), {"PORTALS": 1}).run(SAMPLES, blocks, values)
     table = np.frombuffer(results.read(), np.float32).reshape(SAMPLES, 12).astype(np.float64)
     results.release()

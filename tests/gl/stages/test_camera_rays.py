@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import scenes
+from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.sources import expand
 from rppm_addon.integrator.common.camera_view import camera_view
@@ -34,16 +35,17 @@ def traced_rays(context, library, camera, iteration=1, seed=0):
     width, height = camera.resolution
     view = gl.buffer(camera_view(camera, 0, height, (0.0, 0.0)).tobytes())
     rays, paths = gl.buffer(reserve=RAY.size * width * height), gl.buffer(reserve=CAMERA_PATH.size * width * height)
+    block = iteration_buffer(context, number=iteration + 1, seed=seed)
     library.compute("primary_rays/rays.comp").run(
         width * height,
-        {"Camera": view, "Rays": rays, "CameraPaths": paths},
-        {"first_pixel": 0, "seed": seed, "iteration": iteration},
+        {"Camera": view, "Rays": rays, "CameraPaths": paths, "Iteration": block},
+        {"first_pixel": 0},
     )
     result = [
         np.frombuffer(buffer.read(), record.dtype).reshape(height, width)
         for buffer, record in ((rays, RAY), (paths, CAMERA_PATH))
     ]
-    for buffer in (view, rays, paths):
+    for buffer in (view, rays, paths, block):
         buffer.release()
     return result
 

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Parameters of an iteration that many programs read: one uniform block, as Cycles has its KernelData."""
+
+from collections.abc import Mapping
+
+import moderngl
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context import Context
+from ...gl.programs import ProgramLibrary
+from ...gl.records import Record
+from ...scene.scene import Scene
+from ...scene.settings import DirectLight
+from ..common.iteration import Iteration
+from ..density_estimation.radii import RADIUS_PARAMETERS, Radii, shrinkage
+from ..lights.lights import LIGHT_PARAMETERS, Lights
+from ..surfaces.geometry import Geometry
+
+ITERATION_PARAMETERS = Record(
+    "IterationParameters",
+    number="uint",
+    number_in_film="uint",
+    seed="uint",
+    **LIGHT_PARAMETERS,
+    world_group="uint",
+    direct_world_flux="float",
+    photon_flux="float",
+    limits_bounces="uint",
+    max_bounces="uint",
+    transparent_max_bounces="uint",
+    camera_bounces="uint",
+    photon_bounces="uint",
+    specular_alpha="float",
+    final_gather="uint",
+    next_event="uint",
+    film_transparent="uint",
+    has_round_shapes="uint",
+    shrinkage="float",
+    **RADIUS_PARAMETERS,
+)
+"""Members of the uniform block Iteration (shaders/common/iteration.glsl).
+
+``number``, ``number_in_film``, ``seed`` and ``direct_world_flux`` are those of Iteration. ``photon_flux`` is the mean
+flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
+shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, and what the lights
+and the radii declare.
+"""
+
+
+class IterationBlock(BufferSet):
+    """The uniform block Iteration on the device."""
+
+    _parameters = StorageBuffer("iteration parameters", ITERATION_PARAMETERS, 1)
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
+        self._values: dict[str, object] = {}
+
+    @property
+    def buffer(self) -> moderngl.Buffer:
+        """The block, an ITERATION_PARAMETERS record."""
+        return self._parameters.buffer
+
+    def write(self, scene: Scene, geometry: Geometry, lights: Lights, iteration: Iteration) -> None:
+        """Take an iteration; its radii are 0 until write_radii is called."""
+        settings = scene.settings
+        self._values = {
+            **lights.parameters,
+            "number": iteration.number,
+            "number_in_film": iteration.number_in_film,
+            "seed": iteration.seed,
+            "world_group": lights.world_group,
+            "direct_world_flux": iteration.direct_world_flux,
+            "photon_flux": lights.photon_flux,
+            "limits_bounces": lights.limits_bounces,
+            "max_bounces": settings.max_bounces,
+            "transparent_max_bounces": settings.transparent_max_bounces,
+            "camera_bounces": settings.camera_bounces,
+            "photon_bounces": settings.photon_bounces,
+            "specular_alpha": settings.specular_roughness**2,
+            "final_gather": settings.use_final_gather,
+            "next_event": settings.direct_light is DirectLight.RAYS,
+            "film_transparent": settings.film_transparent,
+            "has_round_shapes": geometry.has_round_shapes,
+            "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),
+        }
+        self._write(dict.fromkeys(RADIUS_PARAMETERS, 0.0))
+
+    def write_radii(self, radii: Radii) -> None:
+        """Take the radii of the iteration, once its photons are known."""
+        self._write(radii.parameters)
+
+    def _write(self, radii: Mapping[str, float]) -> None:
+        self.buffer.write(ITERATION_PARAMETERS.pack({**self._values, **radii}))
