@@ -181,8 +181,15 @@ class BufferSet:
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         """sizes: what the counts follow from. Raises DeviceError when the device has no room."""
         self._owned: list[tuple[Resource, str]] = []
+        self._sets: list[BufferSet] = []
+        self._block_buffers: list[tuple[str, GrowingBuffer]] = []
+        """Buffers that are bound as storage blocks, each with the block's name."""
         for name, declared in self._declared.items():
-            vars(self)[name] = self.own(declared.make(context, library, sizes, self.remedy))
+            made = vars(self)[name] = self.own(declared.make(context, library, sizes, self.remedy))
+            if isinstance(made, BufferSet):
+                self._sets.append(made)
+            elif isinstance(declared, StorageBuffer) and declared.block:
+                self._block_buffers.append((declared.block, made))
 
     def own(self, resource: Owned, name: str = "") -> Owned:
         """Release it with the set; returns it. name: by which a texture is reported."""
@@ -200,17 +207,15 @@ class BufferSet:
 
         A block that several parts have is left out: who binds it names the part.
         """
-        own: dict[str, Bindable] = {}
+        own: dict[str, Bindable] = {block: buffer.buffer for block, buffer in self._block_buffers}
+        if not self._sets:
+            return own
         of_parts: dict[str, Bindable] = {}
         ambiguous: set[str] = set()
-        for name, declared in self._declared.items():
-            made = getattr(self, name)
-            if isinstance(declared, StorageBuffer) and declared.block:
-                own[declared.block] = made.buffer
-            elif isinstance(made, BufferSet):
-                found = made.blocks
-                ambiguous |= of_parts.keys() & found.keys()
-                of_parts |= found
+        for part in self._sets:
+            found = part.blocks
+            ambiguous |= of_parts.keys() & found.keys()
+            of_parts |= found
         return {block: buffer for block, buffer in of_parts.items() if block not in ambiguous} | own
 
     @property
