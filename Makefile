@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock lint docs docs-tools docs-version docs-images pairs survey references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock format lint docs docs-tools docs-version docs-images pairs survey references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -76,7 +76,16 @@ soak: setup ## Use a real Blender window for long (HOURS=2), and tell what grew,
 lock: setup ## Pin anew what make installs, by version and hash
 	.venv/bin/python tools/lock.py
 
-lint: setup ## Check Python, types, imports, license lines, shaders, pinned packages, and what bandit finds unsafe
+# The shaders of the package, and those of tests.
+SHADERS = $(shell find shaders tests -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag')
+
+format: setup ## Lay out Python and GLSL
+	.venv/bin/ruff format .
+	.venv/bin/clang-format -i $(SHADERS)
+
+lint: setup ## Check layout, Python, types, imports, license lines, shaders, pinned packages, and what bandit finds unsafe
+	.venv/bin/ruff format --check .
+	.venv/bin/clang-format --dry-run --Werror $(SHADERS)
 	.venv/bin/ruff check .
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-cache
