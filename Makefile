@@ -81,11 +81,11 @@ SHADERS = $(shell find shaders tests -name '*.glsl' -o -name '*.comp' -o -name '
 
 format: setup ## Lay out Python and GLSL
 	.venv/bin/ruff format .
-	.venv/bin/clang-format -i $(SHADERS)
+	@.venv/bin/clang-format -i $(SHADERS)
 
 lint: setup ## Check layout, Python, types, imports, license lines, shaders, pinned packages, and what bandit finds unsafe
 	.venv/bin/ruff format --check .
-	.venv/bin/clang-format --dry-run --Werror $(SHADERS)
+	@.venv/bin/clang-format --dry-run --Werror $(SHADERS)
 	.venv/bin/ruff check .
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-cache

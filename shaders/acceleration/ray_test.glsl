@@ -25,8 +25,8 @@ uint triangle_tests = 0u;
 struct RayTest {
     WatertightRay ray;
     vec3 direction;
-    uint source_triangle; // never hit
-    bool any_hit;         // the first hit found will do
+    uint source_triangle;  // never hit
+    bool any_hit;          // the first hit found will do
 };
 
 RayTest make_ray_test(Ray ray, bool any_hit) {
@@ -68,10 +68,8 @@ void test_triangle(RayTest test, uint triangle, inout Hit best) {
 #ifdef TRACES_INSTANCES
     Hit before = best;
 #endif
-    intersect_triangle(
-        test.ray, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
-        triangle_vertex(3u * triangle + 2u).xyz,
-        best);
+    intersect_triangle(test.ray, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
+                       triangle_vertex(3u * triangle + 2u).xyz, best);
 #ifdef TRACES_INSTANCES
     // Asked last, as few triangles are hit.
     if (!of_all && best.triangle == triangle && attributes[triangle].instance != traced_instance) best = before;

@@ -12,7 +12,7 @@ restrict readonly buffer BvhNodes;
 // What a ray needs for tests with boxes.
 struct SlabTest {
     vec3 origin;
-    vec3 inverse_direction; // finite
+    vec3 inverse_direction;  // finite
 };
 
 // Where a ray enters a box, and whether it meets the box before a distance. Both ends give way by more than the

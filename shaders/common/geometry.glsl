@@ -3,9 +3,7 @@
 #include "common/whole_numbers.glsl"
 
 // Octahedral unit vectors in two 16-bit parts (Cigolle et al., JCGT 2014).
-vec2 octahedral_fold(vec2 v) {
-    return (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0);
-}
+vec2 octahedral_fold(vec2 v) { return (1.0 - abs(v.yx)) * vec2(v.x >= 0.0 ? 1.0 : -1.0, v.y >= 0.0 ? 1.0 : -1.0); }
 
 uint pack_unit_vector(vec3 v) {
     v /= abs(v.x) + abs(v.y) + abs(v.z);

@@ -37,7 +37,7 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
     vec3 value = vec3(0.0);
     if ((cosine > 0.0) == front) {
         value = (front ? ITS.diffuse : ITS.translucent)
-              * rough_diffuse_factor(ITS.diffuse_roughness, normal, ITS.direction, wi);
+                * rough_diffuse_factor(ITS.diffuse_roughness, normal, ITS.direction, wi);
         value *= shading_correction(cosine, geometric_cosine);
         if (front) value *= bump_shadowing(unpack_unit_vector(ITS.shading_normal), normal, wi);
     }
@@ -46,13 +46,12 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
     if (kind != LOBE_NONE) {
         normal = unpack_unit_vector(ITS.lobe_normal);
         cosine = dot(normal, wi);
-        MicrofacetLobe lobe = MicrofacetLobe(ITS.lobe_weight, kind, ITS.lobe_f0, ITS.lobe_alpha,
-                                             unpack_tint(ITS.lobe_kind),
-                                             ITS.lobe_ior, ITS.lobe_normal, ITS.lobe_anisotropy);
+        MicrofacetLobe lobe =
+            MicrofacetLobe(ITS.lobe_weight, kind, ITS.lobe_f0, ITS.lobe_alpha, unpack_tint(ITS.lobe_kind), ITS.lobe_ior,
+                           ITS.lobe_normal, ITS.lobe_anisotropy);
         if (lobe_faces(lobe, cosine, front))
             value += evaluate_lobe(lobe, normal, ITS.direction, wi)
-                   * (lobe_shadowing(lobe, ITS.shading_normal, wi)
-                      * shading_correction(cosine, geometric_cosine));
+                     * (lobe_shadowing(lobe, ITS.shading_normal, wi) * shading_correction(cosine, geometric_cosine));
     }
     return value;
 }
@@ -93,7 +92,11 @@ bool exceeds_depth(uint importon_history, uint photon_number) {
 float photon_factor(uint gathers) { return float(max(gathers >> PHOTON_FACTOR_SHIFT, 1u)); }
 
 // Light that a photon adds to an importon, what of it is diffuse, and whether it came from the viewer's side.
-struct Estimate { vec3 radiance; vec3 diffuse; bool front; };
+struct Estimate {
+    vec3 radiance;
+    vec3 diffuse;
+    bool front;
+};
 
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
 // integral over the unit disk is 1. False when it adds nothing. stands_for: how many photons the importon's disk holds
@@ -119,11 +122,12 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     vec3 direction = photons[photon_number].direction;
     float side = alignment > 0.0 ? 1.0 : -1.0, away = photons[photon_number].distance;
     if (is_shut_off(side * height, dot(offset, photon_normal), side * dot(direction, geometric) * away, away, radius)
-        && !lobe_is_hair(kind)) return false;
+        && !lobe_is_hair(kind))
+        return false;
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     estimate.front = alignment > 0.0;
-    vec3 radiance = evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)),
-                                      estimate.diffuse);
+    vec3 radiance =
+        evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)), estimate.diffuse);
     vec3 flux = photons[photon_number].flux;
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) kernel *= photon_factor(ITS.gathers);
     radiance = radiance * flux * kernel;

@@ -9,14 +9,12 @@
 
 struct WatertightRay {
     vec3 origin;
-    int axis;    // along which the direction is longest
+    int axis;  // along which the direction is longest
     vec3 shear;
 };
 
 // Coordinates turned so that `axis` comes last.
-vec3 axis_last(vec3 v, int axis) {
-    return axis == 0 ? v.yzx : (axis == 1 ? v.zxy : v);
-}
+vec3 axis_last(vec3 v, int axis) { return axis == 0 ? v.yzx : (axis == 1 ? v.zxy : v); }
 
 WatertightRay make_watertight_ray(vec3 origin, vec3 direction) {
     WatertightRay ray;
@@ -32,8 +30,7 @@ WatertightRay make_watertight_ray(vec3 origin, vec3 direction) {
 // Takes the triangle as the best hit if it lies ahead (distance > 0) and nearer than `best`; of equal
 // distances the lower triangle number wins, so that the order of the tests does not matter.
 // Start with best.triangle = NO_TRIANGLE and best.distance = the longest distance allowed.
-void intersect_triangle(
-    WatertightRay ray, uint triangle, vec3 vertex0, vec3 vertex1, vec3 vertex2, inout Hit best) {
+void intersect_triangle(WatertightRay ray, uint triangle, vec3 vertex0, vec3 vertex1, vec3 vertex2, inout Hit best) {
     precise vec3 a = axis_last(vertex0 - ray.origin, ray.axis);
     precise vec3 b = axis_last(vertex1 - ray.origin, ray.axis);
     precise vec3 c = axis_last(vertex2 - ray.origin, ray.axis);

@@ -2,7 +2,10 @@
 // Threads for the paths of a list (rppm_addon/integrator/common/living_paths.py), not for each that ever began.
 #include <LivingPathsHeader>
 #include "common/invocation.glsl"
-readonly buffer LivingPaths { LivingPathsHeader living; uint living_paths[]; };
+readonly buffer LivingPaths {
+    LivingPathsHeader living;
+    uint living_paths[];
+};
 
 const uint NO_PATH = 0xffffffffu;  // more than any count of paths
 

@@ -12,9 +12,7 @@ uint laine_karras(uint x, uint seed) {
     return x;
 }
 
-uint owen_scramble(uint x, uint seed) {
-    return bitfieldReverse(laine_karras(bitfieldReverse(x), seed));
-}
+uint owen_scramble(uint x, uint seed) { return bitfieldReverse(laine_karras(bitfieldReverse(x), seed)); }
 
 // Bits of the second Sobol dimension, lowest first: its generator matrix is Pascal's triangle modulo 2, which has a one
 // where the bits of the column's number include those of the row's.
@@ -34,11 +32,11 @@ vec2 scrambled_sobol(uint index, uvec4 seed) {
 }
 
 // Columns of the generator matrices of the third and fourth Sobol dimensions (Joe and Kuo, 2008), lowest bits first.
-const uvec2 SOBOL_THIRD_FOURTH[16] = uvec2[16](
-    uvec2(0x1u, 0x1u), uvec2(0x3u, 0x3u), uvec2(0x6u, 0x4u), uvec2(0x9u, 0xau),
-    uvec2(0x17u, 0x1fu), uvec2(0x3au, 0x2eu), uvec2(0x71u, 0x45u), uvec2(0xa3u, 0xc9u),
-    uvec2(0x116u, 0x11bu), uvec2(0x339u, 0x2a4u), uvec2(0x677u, 0x79au), uvec2(0x9aau, 0xb67u),
-    uvec2(0x1601u, 0x101eu), uvec2(0x3903u, 0x302du), uvec2(0x7706u, 0x4041u), uvec2(0xaa09u, 0xa0c3u));
+const uvec2 SOBOL_THIRD_FOURTH[16] =
+    uvec2[16](uvec2(0x1u, 0x1u), uvec2(0x3u, 0x3u), uvec2(0x6u, 0x4u), uvec2(0x9u, 0xau), uvec2(0x17u, 0x1fu),
+              uvec2(0x3au, 0x2eu), uvec2(0x71u, 0x45u), uvec2(0xa3u, 0xc9u), uvec2(0x116u, 0x11bu),
+              uvec2(0x339u, 0x2a4u), uvec2(0x677u, 0x79au), uvec2(0x9aau, 0xb67u), uvec2(0x1601u, 0x101eu),
+              uvec2(0x3903u, 0x302du), uvec2(0x7706u, 0x4041u), uvec2(0xaa09u, 0xa0c3u));
 
 // Bits of these dimensions, lowest first, by the lowest 16 bits of the index: sets of more points repeat them.
 uvec2 sobol_third_fourth_reversed(uint index) {

@@ -27,5 +27,5 @@ uint scattered_history(uint history, uint scatter) {
     uint first = first_scatter(history);
     bool diffuse = scatter == SCATTER_DIFFUSE, caustic = (history & HISTORY_DIFFUSE) != 0u && !diffuse;
     return (first == SCATTER_NONE ? scatter : first | HISTORY_AGAIN) | (history & (HISTORY_AGAIN | HISTORY_CAUSTIC))
-         | (diffuse ? HISTORY_DIFFUSE : 0u) | (caustic ? HISTORY_CAUSTIC : 0u);
+           | (diffuse ? HISTORY_DIFFUSE : 0u) | (caustic ? HISTORY_CAUSTIC : 0u);
 }

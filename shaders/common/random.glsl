@@ -6,9 +6,15 @@
 
 uvec4 pcg4d(uvec4 v) {
     v = v * 1664525u + 1013904223u;
-    v.x += v.y * v.w; v.y += v.z * v.x; v.z += v.x * v.y; v.w += v.y * v.z;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
     v ^= v >> 16u;
-    v.x += v.y * v.w; v.y += v.z * v.x; v.z += v.x * v.y; v.w += v.y * v.z;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
     return v;
 }
 
@@ -16,7 +22,11 @@ uvec4 pcg4d(uvec4 v) {
 float unit_float(uint bits) { return float(bits >> 8u) * (1.0 / 16777216.0); }
 
 // Four values per counter step; segment tells the bounces of a path apart.
-struct RandomSequence { uvec4 key; uvec4 block; uint used; };
+struct RandomSequence {
+    uvec4 key;
+    uvec4 block;
+    uint used;
+};
 
 RandomSequence random_sequence(uint seed, uint iteration, uint stage, uint segment, uint index) {
     RandomSequence sequence;
@@ -32,9 +42,10 @@ float next_random(inout RandomSequence sequence) {
         sequence.key.w += 1u;
         sequence.used = 0u;
     }
-    uint bits = sequence.used == 0u ? sequence.block.x
-              : sequence.used == 1u ? sequence.block.y
-              : sequence.used == 2u ? sequence.block.z : sequence.block.w;
+    uint bits = sequence.used == 0u   ? sequence.block.x
+                : sequence.used == 1u ? sequence.block.y
+                : sequence.used == 2u ? sequence.block.z
+                                      : sequence.block.w;
     sequence.used += 1u;
     return unit_float(bits);
 }

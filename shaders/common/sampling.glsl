@@ -21,8 +21,13 @@ vec2 sample_disk(vec2 u) {
     vec2 p = 2.0 * u - 1.0;
     if (p.x == 0.0 && p.y == 0.0) return vec2(0.0);
     float r, angle;
-    if (abs(p.x) > abs(p.y)) { r = p.x; angle = (PI / 4.0) * (p.y / p.x); }
-    else { r = p.y; angle = PI / 2.0 - (PI / 4.0) * (p.x / p.y); }
+    if (abs(p.x) > abs(p.y)) {
+        r = p.x;
+        angle = (PI / 4.0) * (p.y / p.x);
+    } else {
+        r = p.y;
+        angle = PI / 2.0 - (PI / 4.0) * (p.x / p.y);
+    }
     return r * vec2(cos(angle), sin(angle));
 }
 

@@ -9,7 +9,9 @@ float triangle_solid_angle(vec3 point, vec3 v0, vec3 v1, vec3 v2) {
     float volume = abs(dot(a, cross(v1 - v0, v2 - v0)));
     if (!(volume > 0.0 && min(lengths.x, min(lengths.y, lengths.z)) > 0.0)) return 0.0;
     volume = volume / lengths.x / lengths.y / lengths.z;
-    a /= lengths.x; b /= lengths.y; c /= lengths.z;
+    a /= lengths.x;
+    b /= lengths.y;
+    c /= lengths.z;
     // Van Oosterom and Strackee 1983; 1 + dot(a, b) from the sum, which is exact where a and b are opposite.
     vec3 sum = a + b;
     return 2.0 * atan(volume, 0.5 * dot(sum, sum) + dot(c, sum));

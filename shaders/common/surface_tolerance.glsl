@@ -18,5 +18,5 @@ const float HEIGHT_ROUNDING = 0.01;
 bool is_shut_off(float height, float photon_height, float rise, float away, float radius) {
     float slack = NORMAL_ROUNDING * radius;
     return max(height, photon_height) < slack
-        && height + rise < HEIGHT_ROUNDING * abs(height) + NORMAL_ROUNDING * away + slack;
+           && height + rise < HEIGHT_ROUNDING * abs(height) + NORMAL_ROUNDING * away + slack;
 }

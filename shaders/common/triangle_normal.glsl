@@ -6,5 +6,5 @@
 vec3 triangle_normal(uint triangle, vec3 b) {
     return b.x * unpack_unit_vector(attributes[triangle].normal0)
            + b.y * unpack_unit_vector(attributes[triangle].normal1)
-         + b.z * unpack_unit_vector(attributes[triangle].normal2);
+           + b.z * unpack_unit_vector(attributes[triangle].normal2);
 }

@@ -27,7 +27,12 @@ readonly buffer Closures;
 const uint MOST_LAYERS = 4u;
 const float FLAT = 0.99;
 
-struct Disk { vec3 center; vec3 normal; float radius; uint triangle; };
+struct Disk {
+    vec3 center;
+    vec3 normal;
+    float radius;
+    uint triangle;
+};
 
 // Importons of the group that need rays: most see their own triangle, and the others stand side by side.
 shared uint pending[64];
@@ -97,7 +102,7 @@ RandomSequence random_of(uint index) {
 
 bool takes_diffused_photons(uint index) {
     return importons[index].radius > 0.0
-        && (importons[index].gathers & (GATHERED_BY_RAY | GATHERS_BY_RAY)) == GATHERED_BY_RAY;
+           && (importons[index].gathers & (GATHERED_BY_RAY | GATHERS_BY_RAY)) == GATHERED_BY_RAY;
 }
 
 void main() {

@@ -30,8 +30,8 @@ void begin_iteration() {
     float kept = float(iteration.number_in_film - 1u) / float(iteration.number_in_film);
     for (uint pair = first; pair < first + parameters.pair_count; pair++) {
         uvec2 held = pairs[pair];
-        pairs[pair] = iteration.number_in_film == 1u ? uvec2(0u)
-                    : uvec2(held.x, floatBitsToUint(kept * uintBitsToFloat(held.y)));
+        pairs[pair] =
+            iteration.number_in_film == 1u ? uvec2(0u) : uvec2(held.x, floatBitsToUint(kept * uintBitsToFloat(held.y)));
     }
 }
 

@@ -17,9 +17,7 @@ DEPTH_BINS_ACCESS buffer DepthBins { uint bin_ends[]; };
 int bins_cut(CubemapCell cell) { return max(int(content_count(cell.content)) - JOIN_MOST, 0); }
 int bins_join(CubemapCell cell) { return max(JOIN_MOST - int(content_count(cell.content)), 0); }
 
-int bins_total(CubemapCell cell) {
-    return ((bitCount(cell.slices) << bins_cut(cell)) - 1 >> bins_join(cell)) + 1;
-}
+int bins_total(CubemapCell cell) { return ((bitCount(cell.slices) << bins_cut(cell)) - 1 >> bins_join(cell)) + 1; }
 
 // The bin of a part (depth_parts of 32 << cut); between slices in use the bin behind, or the one before.
 int bin_of_part(int part, CubemapCell cell, bool before) {

@@ -38,7 +38,6 @@ void classify_cell(uvec4 job, ivec2 within) {
 #else
     if (!triangle_depths(job.x, face, bounds, depths)) return;
 #endif
-    add_fragment(
-        first_cell_of_tile(job_tile(job)) + tile_offset(within), cell, side_exponent, job.x,
-        depth_codes(depths, deep_cubemap), job.zw);
+    add_fragment(first_cell_of_tile(job_tile(job)) + tile_offset(within), cell, side_exponent, job.x,
+                 depth_codes(depths, deep_cubemap), job.zw);
 }

@@ -7,9 +7,9 @@
 
 // Distances (scaled) from the cone's four planes, positive inside, planes moved out by the margin.
 vec4 inside_cone(vec3 point, vec4 bounds, float margin) {
-    return vec4(
-        point.x - bounds.x * point.z, bounds.y * point.z - point.x,
-        point.y - bounds.z * point.z, bounds.w * point.z - point.y) + margin;
+    return vec4(point.x - bounds.x * point.z, bounds.y * point.z - point.x, point.y - bounds.z * point.z,
+                bounds.w * point.z - point.y)
+           + margin;
 }
 
 float least(vec4 v) { return min(min(v.x, v.y), min(v.z, v.w)); }
@@ -19,14 +19,14 @@ float greatest(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
 bool clip_edge(vec4 inside_a, vec4 inside_b, out float from, out float to) {
     bvec4 a_is_out = lessThan(inside_a, vec4(0.0));
     bvec4 b_is_out = lessThan(inside_b, vec4(0.0));
-    vec4 crossing = inside_a / (inside_a - inside_b); // used only where the signs differ
+    vec4 crossing = inside_a / (inside_a - inside_b);  // used only where the signs differ
     from = greatest(mix(vec4(0.0), crossing, a_is_out));
     to = least(mix(vec4(1.0), crossing, b_is_out));
     return least(max(inside_a, inside_b)) >= 0.0 && from <= to;
 }
 
 struct ConeCorners {
-    vec3 plane_normal; // of the triangle, not of unit length
+    vec3 plane_normal;  // of the triangle, not of unit length
     vec3 a;
     vec3 edge_moments0, edge_moments1, edge_moments2;
     vec3 edge0, edge1, edge2;
@@ -35,8 +35,7 @@ struct ConeCorners {
 // What the corner lines of any cone need of a triangle. An edge's moment tells on which side of the
 // edge a line through the center passes.
 ConeCorners prepare_corners(vec3 a, vec3 b, vec3 c) {
-    return ConeCorners(
-        cross(b - a, c - a), a, cross(b, c - b), cross(c, a - c), cross(a, b - a), b - c, c - a, a - b);
+    return ConeCorners(cross(b - a, c - a), a, cross(b, c - b), cross(c, a - c), cross(a, b - a), b - c, c - a, a - b);
 }
 
 // Depth at which the cone's corner line (0 to 3) pierces the triangle.
@@ -44,10 +43,9 @@ bool corner_depth(ConeCorners triangle, int corner, vec4 bounds, float margin, o
     bool right = (corner & 1) != 0, top = (corner & 2) != 0;
     vec3 direction = vec3(right ? bounds.y : bounds.x, top ? bounds.w : bounds.z, 1.0);
     vec3 start = vec3(right ? margin : -margin, top ? margin : -margin, 0.0);
-    vec3 sides = vec3(
-        dot(direction, triangle.edge_moments0 + cross(start, triangle.edge0)),
-        dot(direction, triangle.edge_moments1 + cross(start, triangle.edge1)),
-        dot(direction, triangle.edge_moments2 + cross(start, triangle.edge2)));
+    vec3 sides = vec3(dot(direction, triangle.edge_moments0 + cross(start, triangle.edge0)),
+                      dot(direction, triangle.edge_moments1 + cross(start, triangle.edge1)),
+                      dot(direction, triangle.edge_moments2 + cross(start, triangle.edge2)));
     float approach = dot(direction, triangle.plane_normal);
     depth = dot(triangle.a - start, triangle.plane_normal) / approach;
     bool between = all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
@@ -61,12 +59,10 @@ bool corner_depth(ConeCorners triangle, int corner, vec4 bounds, float margin, o
 bool touches_tip(ConeCorners triangle, vec3 b, vec3 c, float reach) {
     vec3 low = min(min(triangle.a, b), c), high = max(max(triangle.a, b), c);
     return all(lessThanEqual(low, vec3(reach))) && all(greaterThanEqual(high, vec3(-reach)))
-        && abs(dot(triangle.a, triangle.plane_normal)) <= reach * dot(abs(triangle.plane_normal), vec3(1.0));
+           && abs(dot(triangle.a, triangle.plane_normal)) <= reach * dot(abs(triangle.plane_normal), vec3(1.0));
 }
 
-void widen(float depth, inout vec2 interval) {
-    interval = vec2(min(interval.x, depth), max(interval.y, depth));
-}
+void widen(float depth, inout vec2 interval) { interval = vec2(min(interval.x, depth), max(interval.y, depth)); }
 
 void widen_by_edge(vec3 a, vec3 b, vec4 inside_a, vec4 inside_b, inout vec2 interval) {
     float from, to;

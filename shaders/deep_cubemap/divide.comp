@@ -19,9 +19,8 @@ uniform Parameters { DivideLevel parameters; };
 const uint MOST_TOUCHED = 7u;
 
 bool is_divisible(CubemapCell cell) {
-    return parameters.level < deep_cubemap.last_level
-        && cell.slices <= MOST_TOUCHED * cell.content
-        && cell.slices + 16u * deep_cubemap.least_gain < 16u * cell.content;
+    return parameters.level < deep_cubemap.last_level && cell.slices <= MOST_TOUCHED * cell.content
+           && cell.slices + 16u * deep_cubemap.least_gain < 16u * cell.content;
 }
 
 // Whether the device can hold the fragments that dividing the cell may make; else it stays as it is.
@@ -71,7 +70,7 @@ void main() {
         if ((divided >> child & 1u) != 0u) {
             content = add_tile(next_tile++, 4 * place_cell(place) + ivec2(child & 3u, child >> 2), place_face(place));
         } else if (count <= MOST_LISTED) {
-            content = pack_content(CELL_LIST, next_entry, 0u); // counted up as the entries come
+            content = pack_content(CELL_LIST, next_entry, 0u);  // counted up as the entries come
             next_entry += count;
         } else {
             content = add_binned_cell(index, count);

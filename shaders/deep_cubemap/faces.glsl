@@ -15,9 +15,7 @@ float cell_size(int side_exponent) { return uintBitsToFloat(uint(128 - side_expo
 
 // Where the borders of cells lie on the plane z = 1. The size is a power of two, so that this is exact
 // and a border is the same number seen from both its sides and on all levels.
-vec2 cell_border(ivec2 border, float cell_size) {
-    return vec2(border) * cell_size - 1.0;
-}
+vec2 cell_border(ivec2 border, float cell_size) { return vec2(border) * cell_size - 1.0; }
 
 // (least u, greatest u, least v, greatest v) of a cell.
 vec4 cell_bounds(ivec2 cell, float cell_size) {

@@ -25,9 +25,8 @@ void divide_fragment(OverlapFragment fragment, uint tile) {
     int side_exponent = int(parameters.side_exponent) + 2;
     ivec4 within = extent_in_tile(extent, divided, side_exponent);
     if (within.xy == within.zw) {
-        add_fragment(
-            first_cell_of_tile(tile) + tile_offset(within.xy), 4 * divided + within.xy, side_exponent,
-            fragment.triangle, uvec2(fragment.near, fragment.far), extent);
+        add_fragment(first_cell_of_tile(tile) + tile_offset(within.xy), 4 * divided + within.xy, side_exponent,
+                     fragment.triangle, uvec2(fragment.near, fragment.far), extent);
     } else {
         add_job(fragment.triangle, tile, within, extent);
     }
@@ -48,9 +47,7 @@ void main() {
     } else if (content_kind(cell.content) == CELL_LIST) {
         uint content = atomicAdd(cubemap_cells[fragment.cell].content, 1u);
         uint place = content_start(content) + content_count(content);
-        if (place < deep_cubemap.entry_capacity) {
-            cell_entries[place] = uvec2(fragment.triangle, quantized_depths);
-        }
+        if (place < deep_cubemap.entry_capacity) { cell_entries[place] = uvec2(fragment.triangle, quantized_depths); }
     } else {
         uint number = binned_cell_number(cell.content);
         if (number < deep_cubemap.binned_cell_capacity) atomicAdd(binned_cells[number].slices, uint(bitCount(slices)));

@@ -27,18 +27,18 @@ uint listed_at(vec3 point) {
     }
     CubemapCell cell = cubemap_cell(index);
     uint start = content_start(cell.content);
-    return content_kind(cell.content) == CELL_BINS
-        ? bin_ends[start + uint(bins_total(cell))] - bin_ends[start] : content_count(cell.content);
+    return content_kind(cell.content) == CELL_BINS ? bin_ends[start + uint(bins_total(cell))] - bin_ends[start]
+                                                   : content_count(cell.content);
 }
 
 void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
     vec2 at = window_point(index), center = vec2(0.0);
-    Ray ray = world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, center)
-                        : panorama_ray(at, center));
+    Ray ray =
+        world_ray(camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, center) : panorama_ray(at, center));
     Hit hit = nearest_hit(ray);
-    uint listed = hit.triangle == NO_TRIANGLE
-        ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.center);
+    uint listed =
+        hit.triangle == NO_TRIANGLE ? 0u : listed_at(ray.origin + hit.distance * ray.direction - deep_cubemap.center);
     inspections[index] = vec4(walk_steps, triangle_tests, listed, entries_read);
 }

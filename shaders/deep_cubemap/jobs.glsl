@@ -4,6 +4,4 @@
 
 uint job_tile(uvec4 job) { return job.y >> 8; }
 
-ivec4 job_rectangle(uvec4 job) {
-    return ivec4(job.y & 3u, (job.y >> 2) & 3u, (job.y >> 4) & 3u, (job.y >> 6) & 3u);
-}
+ivec4 job_rectangle(uvec4 job) { return ivec4(job.y & 3u, (job.y >> 2) & 3u, (job.y >> 4) & 3u, (job.y >> 6) & 3u); }

@@ -12,7 +12,7 @@ uniform Parameters { OverlapDraw parameters; };
 #include "deep_cubemap/classify.glsl"
 
 #include <Dispatch>
-shared uint cells_up_to[GROUP_SIZE]; // of this job and those before it
+shared uint cells_up_to[GROUP_SIZE];  // of this job and those before it
 
 // The job that the group's cell of a number belongs to.
 uint job_of_cell(uint number) {

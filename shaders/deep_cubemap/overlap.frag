@@ -11,6 +11,4 @@ uniform Parameters { OverlapDraw parameters; };
 flat in uint job_number;
 flat in ivec2 tile_origin;
 
-void main() {
-    classify_cell(overlap_jobs[job_number], ivec2(gl_FragCoord.xy) - tile_origin);
-}
+void main() { classify_cell(overlap_jobs[job_number], ivec2(gl_FragCoord.xy) - tile_origin); }

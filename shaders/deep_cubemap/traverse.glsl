@@ -23,7 +23,7 @@
 struct CubemapWalk {
     DeepCubemapState cubemap;
     RayTest test;
-    vec3 origin; // from the center
+    vec3 origin;  // from the center
 };
 
 bool is_done(CubemapWalk walk, Hit best, float distance) {
@@ -49,10 +49,10 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
         first = bin_ends[start + uint(bin)];
         end = bin_ends[start + uint(bin) + 1u];
     }
-    for (int remaining = bins.y - bins.x; ; --remaining) {
+    for (int remaining = bins.y - bins.x;; --remaining) {
         uint place = first;
 #ifdef TRIANGLE_CLUSTERS
-        uint next = 0u, behind = 0u; // of the cluster that is being tested
+        uint next = 0u, behind = 0u;  // of the cluster that is being tested
 #endif
         while (true) {
             // on to the next candidate first: the threads of a group then test theirs together
@@ -81,8 +81,8 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
             if (walk.test.any_hit) return;
             // a hit ends the ray before the bins that lie behind it
             float hit_depth = depth.x + best.distance * depth.y;
-            ivec2 hit_bins = bins_between(
-                depth_codes(hit_depth + vec2(-1.0, 1.0) * walk.cubemap.margin, walk.cubemap), cell);
+            ivec2 hit_bins =
+                bins_between(depth_codes(hit_depth + vec2(-1.0, 1.0) * walk.cubemap.margin, walk.cubemap), cell);
             if (outwards ? hit_bins.y <= bin : hit_bins.x >= bin) return;
         }
         seen = outwards ? ENTRY_IN_BIN_BEFORE : ENTRY_IN_BIN_BEHIND;
@@ -141,7 +141,9 @@ const int START_LEVEL = 1;
 int highest_bit(int number) { return (floatBitsToInt(float(number)) >> 23) - 127; }
 
 // First cells of the tiles that were entered, by level from 1 on. No array: those with a variable index lie in memory.
-struct TileStack { uint at1, at2, at3, at4, at5, at6; };
+struct TileStack {
+    uint at1, at2, at3, at4, at5, at6;
+};
 
 void push_tile(inout TileStack tiles, int level, uint tile) {
     tiles.at1 = level == 1 ? tile : tiles.at1;
@@ -202,7 +204,7 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
         uvec2 depths = depths_between(min(ends.x, ends.y), max(ends.x, ends.y), walk.cubemap);
         CubemapCell content = cubemap_cell(tile + tile_offset(block));
         bool occupied = depths.x <= content.far && depths.y >= ~content.near_complement
-            && (content.slices & depth_slices(depths, content)) != 0u;
+                        && (content.slices & depth_slices(depths, content)) != 0u;
         if (occupied) {
             if (content_kind(content.content) == CELL_TILE) {
                 push_tile(tiles, level, tile);
@@ -239,7 +241,9 @@ void walk_face(CubemapWalk walk, int face, float enter, float leave, inout Hit b
 // The parts of a ray seen through the faces: enter and leave of those along +x, +y, +z and along -x, -y, -z.
 // The faces meet in six planes through the center, and neighbors take their common border from the same
 // number, so that the parts leave no gap.
-struct FaceParts { vec3 enter_positive, leave_positive, enter_negative, leave_negative; };
+struct FaceParts {
+    vec3 enter_positive, leave_positive, enter_negative, leave_negative;
+};
 
 FaceParts clip_to_faces(vec3 origin, vec3 direction, float from, float to) {
     // x - y, y - z, z - x and their sums
@@ -248,18 +252,14 @@ FaceParts clip_to_faces(vec3 origin, vec3 direction, float from, float to) {
     vec3 difference_zero = -difference / difference_slope, sum_zero = -sum / sum_slope;
     vec3 never = vec3(INFINITY_DISTANCE), always = vec3(-INFINITY_DISTANCE);
     // from where on the difference is positive, or negative; a constant one is so always or never
-    vec3 rise = mix(
-        mix(always, difference_zero, greaterThan(difference_slope, vec3(0.0))), never,
-        bvec3(vec3(equal(difference_slope, vec3(0.0))) * vec3(lessThan(difference, vec3(0.0)))));
-    vec3 fall = mix(
-        mix(always, difference_zero, lessThan(difference_slope, vec3(0.0))), never,
-        bvec3(vec3(equal(difference_slope, vec3(0.0))) * vec3(greaterThan(difference, vec3(0.0)))));
-    vec3 sum_rise = mix(
-        mix(always, sum_zero, greaterThan(sum_slope, vec3(0.0))), never,
-        bvec3(vec3(equal(sum_slope, vec3(0.0))) * vec3(lessThan(sum, vec3(0.0)))));
-    vec3 sum_fall = mix(
-        mix(always, sum_zero, lessThan(sum_slope, vec3(0.0))), never,
-        bvec3(vec3(equal(sum_slope, vec3(0.0))) * vec3(greaterThan(sum, vec3(0.0)))));
+    vec3 rise = mix(mix(always, difference_zero, greaterThan(difference_slope, vec3(0.0))), never,
+                    bvec3(vec3(equal(difference_slope, vec3(0.0))) * vec3(lessThan(difference, vec3(0.0)))));
+    vec3 fall = mix(mix(always, difference_zero, lessThan(difference_slope, vec3(0.0))), never,
+                    bvec3(vec3(equal(difference_slope, vec3(0.0))) * vec3(greaterThan(difference, vec3(0.0)))));
+    vec3 sum_rise = mix(mix(always, sum_zero, greaterThan(sum_slope, vec3(0.0))), never,
+                        bvec3(vec3(equal(sum_slope, vec3(0.0))) * vec3(lessThan(sum, vec3(0.0)))));
+    vec3 sum_fall = mix(mix(always, sum_zero, lessThan(sum_slope, vec3(0.0))), never,
+                        bvec3(vec3(equal(sum_slope, vec3(0.0))) * vec3(greaterThan(sum, vec3(0.0)))));
     // until where: as long as the opposite has not begun
     vec3 rise_end = mix(never, difference_zero, lessThan(difference_slope, vec3(0.0)));
     vec3 fall_end = mix(never, difference_zero, greaterThan(difference_slope, vec3(0.0)));
@@ -344,8 +344,8 @@ Hit trace_ray(Ray ray, bool any_hit) {
     if (!(from < to)) return best;
 
     // Near the center the ray tests the core list, and walks cells only before and after that.
-    bool meets_core = clip_to_ball(closest, squared_miss, squared_length, cubemap.core_radius, core)
-        && core.y > from && core.x < to;
+    bool meets_core =
+        clip_to_ball(closest, squared_miss, squared_length, cubemap.core_radius, core) && core.y > from && core.x < to;
     for (int part = 0; part < 2; ++part) {
         float end = part == 0 && meets_core ? core.x : to;
         if (from < end) walk_faces(walk, from, end, best);
@@ -360,11 +360,7 @@ Hit trace_ray(Ray ray, bool any_hit) {
 }
 
 // The nearest hit within ray.maximum_distance (which may be it); best.triangle NO_TRIANGLE if none.
-Hit nearest_hit(Ray ray) {
-    return trace_ray(ray, false);
-}
+Hit nearest_hit(Ray ray) { return trace_ray(ray, false); }
 
 // Whether anything lies within ray.maximum_distance.
-bool is_occluded(Ray ray) {
-    return trace_ray(ray, true).triangle != NO_TRIANGLE;
-}
+bool is_occluded(Ray ray) { return trace_ray(ray, true).triangle != NO_TRIANGLE; }

@@ -21,7 +21,7 @@ void widen_box(vec3 a, vec3 b, vec3 c) {
 }
 
 void list_core_triangle(uint triangle, vec3 a, vec3 b, vec3 c) {
-    vec3 outside = max(max(min(min(a, b), c), -max(max(a, b), c)), vec3(0.0)); // the box's nearest point
+    vec3 outside = max(max(min(min(a, b), c), -max(max(a, b), c)), vec3(0.0));  // the box's nearest point
     float reach = 1.01 * deep_cubemap.core_radius;
     if (dot(outside, outside) >= reach * reach) return;
     uint index = atomicAdd(deep_cubemap.core_count, 1u);
@@ -35,14 +35,16 @@ void list_jobs(uint triangle, int face, uvec2 extent) {
     ivec4 tiles = cells >> 2;
     for (ivec2 divided = tiles.xy; divided.y <= tiles.w; ++divided.y) {
         for (divided.x = tiles.x; divided.x <= tiles.z; ++divided.x) {
-            uint tile = dense_cell_index(face, divided, int(deep_cubemap.base_level) - 1,
-                                         1 << deep_cubemap.root_exponent);
+            uint tile =
+                dense_cell_index(face, divided, int(deep_cubemap.base_level) - 1, 1 << deep_cubemap.root_exponent);
             add_job(triangle, tile, extent_in_tile(extent, divided, side_exponent), extent);
         }
     }
 }
 
-struct Corners { vec3 a, b, c; };
+struct Corners {
+    vec3 a, b, c;
+};
 
 // About the center.
 Corners corners_of(uint triangle) {

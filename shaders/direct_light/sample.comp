@@ -34,7 +34,10 @@ readonly buffer RadiusFactors;
 writeonly buffer LightSplits;
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
-struct Parts { vec3 glossy; vec3 transmission; };
+struct Parts {
+    vec3 glossy;
+    vec3 transmission;
+};
 
 // The alpha above which lobes are evaluated toward lights.
 float smoothest_lit(bool gathered) {
@@ -49,8 +52,7 @@ bool lobe_is_lit(MicrofacetLobe lobe, bool gathered) {
 // Whether any part of a closure is.
 bool can_be_lit(uint index, Closure closure, bool gathered) {
     bool lit = largest(closure.diffuse) > 0.0 || largest(closure.translucent) > 0.0;
-    for (int k = 0; k < closure_lobes(closure); ++k)
-        lit = lit || lobe_is_lit(stored_lobe(index, k), gathered);
+    for (int k = 0; k < closure_lobes(closure); ++k) lit = lit || lobe_is_lit(stored_lobe(index, k), gathered);
     return lit;
 }
 
@@ -63,8 +65,7 @@ bool can_be_lit(uint index, Closure closure, bool gathered) {
 vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares shares, bool gathered, vec3 wo, vec3 wi,
                       bool front, uint visibility, bool is_shared, float light_pdf, float by_rays, out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
-    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front)
-                                                 : vec3(0.0);
+    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
     if (is_shared) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
@@ -80,8 +81,9 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         bool specular = lobe_is_specular(lobe, iteration.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
         if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > SMOOTHEST_LIT)))
-            weight *= power_heuristic(light_pdf, part_probability((specular ? shares.specular : shares.stored)[1 + k],
-                                                                  shares) * scattered.pdf);
+            weight *=
+                power_heuristic(light_pdf, part_probability((specular ? shares.specular : shares.stored)[1 + k], shares)
+                                               * scattered.pdf);
         vec3 part = weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
         value += part;
         uint scatter = lobe_scatter(lobe.kind, !front);
@@ -92,7 +94,13 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
 }
 
 // Light that arrives along a direction if nothing is in the way.
-struct Arriving { vec3 radiance; vec3 direction; float distance; uint light; uint triangle; };
+struct Arriving {
+    vec3 radiance;
+    vec3 direction;
+    float distance;
+    uint light;
+    uint triangle;
+};
 
 const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE);
 
@@ -101,7 +109,11 @@ vec3 share_of(vec3 part, vec3 whole) {
 }
 
 // Light that may arrive, of which one is to be chosen by weight: the one so far over its weight, and the sum of all.
-struct Candidates { Arriving chosen; float weights; float u; };
+struct Candidates {
+    Arriving chosen;
+    float weights;
+    float u;
+};
 
 void add_candidate(inout Candidates candidates, float weight, Arriving arriving) {
     if (!(weight > 0.0)) return;
@@ -117,14 +129,13 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
                             uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
-    for (int k = 0; k < closure_lobes(closure); ++k)
-        looks = looks || lobe_is_specular(stored_lobe(index, k), alpha);
+    for (int k = 0; k < closure_lobes(closure); ++k) looks = looks || lobe_is_specular(stored_lobe(index, k), alpha);
     if (!looks) return NOTHING_ARRIVES;
     uint light_set = light_set_at(closure.triangle);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 disk = sample_disk(scrambled_sobol(parameters.light_sample, pcg4d(choices + 1u)));
-    Candidates candidates = Candidates(NOTHING_ARRIVES, 0.0,
-                                       scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).x);
+    Candidates candidates =
+        Candidates(NOTHING_ARRIVES, 0.0, scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).x);
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = stored_lobe(index, k);
         if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
@@ -136,7 +147,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathSh
                                             candidates.u, path_absorption(flags));
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
-                       * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
+                         * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
                       Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE));
@@ -170,23 +181,22 @@ float left_to_rays(vec3 point, vec3 direction, float radius) {
 
 // Of a light that is chosen by what it may give at the point.
 Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure closure, vec3 throughput,
-                             PathShares shares, vec3 wo, bool gathered, bool gathers, uvec4 choices,
-                             out Parts parts) {
+                             PathShares shares, vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     // Of the light, then of a light deep in the tree, and of the point on the light: even together.
     vec4 u = scrambled_sobol4(parameters.light_sample, choices).zwxy;
     vec3 facing = lit_normal(closure);
-    LightChoice choice = choose_light_at(LitPoint(closure.position, facing, lit_from_behind(index, closure),
-                                                  light_set_at(closure.triangle)),
-                                         chosen_environment_irradiance(closure.position, gathers), u.x, u.y);
+    LightChoice choice = choose_light_at(
+        LitPoint(closure.position, facing, lit_from_behind(index, closure), light_set_at(closure.triangle)),
+        chosen_environment_irradiance(closure.position, gathers), u.x, u.y);
     Light light = lights[choice.light];
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
     float side = dot(facing, sampled.direction);
     bool too_far = bounces_of(path.depth) > light.max_bounces;
     // All at once, since what each branch gives back would be kept beside what others compute.
     bool arrives = choice.probability > 0.0 && !too_far && largest(sampled.weight) > 0.0
-                && sampled.triangle != closure.triangle && side != 0.0;
+                   && sampled.triangle != closure.triangle && side != 0.0;
     if (!arrives) return NOTHING_ARRIVES;
     bool environment = light.kind == LIGHT_WORLD;
     // Of the environment, photons have to know the density as well, for which the choice at the point is none.
@@ -194,7 +204,7 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     bool is_plain = sampled.triangle == NO_TRIANGLE || emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT == 0u;
     bool leaves = (dot(unpack_unit_vector(closure.geometric_normal), sampled.direction) > 0.0) == (side > 0.0);
     bool is_shared = gathers && leaves && light_pdf > 0.0
-                  && (environment || (!gathered && is_plain && is_shared_light(light, bounces_of(path.depth))));
+                     && (environment || (!gathered && is_plain && is_shared_light(light, bounces_of(path.depth))));
     float by_rays = environment ? left_to_rays(closure.position, sampled.direction, radius) : 1.0;
     vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, wo, sampled.direction, side > 0.0,
                                       light.flags, is_shared, light_pdf, by_rays, parts);
@@ -231,12 +241,12 @@ void main() {
     uint flags = path.flags, bounces = bounces_of(path.depth);
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > iteration.camera_bounces) return;
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
-    bool gathered = (flags & PATH_GATHERED) != 0u, gathers = iteration.final_gather != 0u
-        && bounces < iteration.camera_bounces
-        && path_gathers(flags, length_to_gather_by(closure), iteration.gathers_again_below);
+    bool gathered = (flags & PATH_GATHERED) != 0u,
+         gathers = iteration.final_gather != 0u && bounces < iteration.camera_bounces
+                   && path_gathers(flags, length_to_gather_by(closure), iteration.gathers_again_below);
     vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed,
-                                STAGE_DIRECT_LIGHT << 24u));
+    uvec4 choices =
+        pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_DIRECT_LIGHT << 24u));
 #ifdef HAIR_LOBES
     fiber_seed = choices.w + 2654435769u * parameters.light_sample;
 #endif
@@ -244,8 +254,8 @@ void main() {
     PathShares shares = path_shares(index, closure, throughput, viewer, iteration.specular_alpha, gathers,
                                     (flags & PATH_STRAIGHT) != 0u);
     Parts parts;  // shares of it
-    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered),
-                                            closure, throughput, shares, viewer, gathered, gathers, choices, parts);
+    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered), closure,
+                                            throughput, shares, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
     // One ray for both: by what they would add.

@@ -33,9 +33,9 @@ float envelope_height(vec3 corners[3], vec3 normals[3], vec3 point, float sign) 
 vec3 to_curved_surface(uint triangle, vec3 point, vec3 geometric) {
     vec3 corners[3];
     for (int k = 0; k < 3; ++k) corners[k] = triangle_vertices[3u * triangle + uint(k)].xyz;
-    vec3 normals[3] = vec3[3](unpack_unit_vector(attributes[triangle].normal0),
-                              unpack_unit_vector(attributes[triangle].normal1),
-                              unpack_unit_vector(attributes[triangle].normal2));
+    vec3 normals[3] =
+        vec3[3](unpack_unit_vector(attributes[triangle].normal0), unpack_unit_vector(attributes[triangle].normal1),
+                unpack_unit_vector(attributes[triangle].normal2));
     vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], face = cross(e1, e2), offset = point - corners[0];
     float size2 = max(dot(face, face), 1e-30);
     float b1 = dot(cross(offset, e2), face) / size2, b2 = dot(cross(e1, offset), face) / size2, b0 = 1.0 - b1 - b2;

@@ -6,7 +6,11 @@
 // Where a lobe scatters any light, its color must be none to divide by 0.
 const float LEAST_REFLECTANCE = 1e-6;
 
-struct LightColors { vec3 diffuse; vec3 glossy; vec3 transmission; };
+struct LightColors {
+    vec3 diffuse;
+    vec3 glossy;
+    vec3 transmission;
+};
 
 vec3 not_nothing(vec3 reflectance) { return max(reflectance, vec3(LEAST_REFLECTANCE)); }
 
@@ -31,7 +35,8 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
     else if (lobe_is_hair(kind)) colors.glossy += hair_color(lobe, cosine);
     else
 #endif
-    if (lobe_is_diffuse(kind)) colors.diffuse += lobe.weight * reflectance;
+        if (lobe_is_diffuse(kind))
+        colors.diffuse += lobe.weight * reflectance;
     else if (!lobe_has_facets(kind)) colors.glossy += lobe.weight * reflectance;
     else if (kind == LOBE_REFRACTION) colors.transmission += lobe.weight;
     else if (kind == LOBE_SHEET) colors.transmission += lobe.weight * white_albedo(roughness, cosine);
@@ -45,9 +50,11 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
         float rise = lobe.ior > 1.0 ? dielectric_grazing_albedo(lobe.ior, roughness, cosine) / white
                                     : dielectric_interpolation(cosine, lobe.ior);
         vec3 f0 = kind == LOBE_DIELECTRIC ? lobe.f0
-                : kind == LOBE_GLASS ? lobe.tint * normal_reflectance(lobe.ior) : lobe.tint;
-        float energy = kind == LOBE_GLASS ? max(glass_albedo(lobe.ior, roughness, cosine), 0.05)
-                     : kind == LOBE_DIELECTRIC ? white : 1.0;
+                  : kind == LOBE_GLASS    ? lobe.tint * normal_reflectance(lobe.ior)
+                                          : lobe.tint;
+        float energy = kind == LOBE_GLASS        ? max(glass_albedo(lobe.ior, roughness, cosine), 0.05)
+                       : kind == LOBE_DIELECTRIC ? white
+                                                 : 1.0;
         colors.glossy += lobe.weight * energy * not_nothing(mix(f0, vec3(1.0), rise));
         if (lobe_transmits(kind)) colors.transmission += lobe.f0 * energy * not_nothing(1.0 - reflectance);
     }

@@ -39,9 +39,9 @@ const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
 const uint DENOISING_DATA = 1u << PASS_DENOISING_ALBEDO | 1u << PASS_DENOISING_NORMAL | 1u << PASS_DENOISING_DEPTH;
 const uint COLORS = 1u << PASS_DIFFUSE_COLOR | 1u << PASS_GLOSSY_COLOR | 1u << PASS_TRANSMISSION_COLOR;
 
-uint index;        // in the band
-uvec2 counts;      // with this iteration
-bool hit;          // else the path passed all by
+uint index;    // in the band
+uvec2 counts;  // with this iteration
+bool hit;      // else the path passed all by
 
 void write_pass(uint which, vec4 value) {
     if (!is_on(which) || (PASS_ACCUMULATION[which] == ACCUMULATION_FIRST && !(hit && counts.y == 1u))) return;
@@ -50,8 +50,8 @@ void write_pass(uint which, vec4 value) {
     for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
         float before = pass_values[place + channel];
         pass_values[place + channel] = PASS_ACCUMULATION[which] == ACCUMULATION_MEAN
-            ? before + (value[channel] - before) / float(counts.x)
-            : value[channel];
+                                           ? before + (value[channel] - before) / float(counts.x)
+                                           : value[channel];
     }
 }
 
@@ -156,14 +156,14 @@ void main() {
     }
     CameraPath path = camera_paths[index];
     bool straight = (path.flags & PATH_STRAIGHT) != 0u, looks = looks_for_surface(path.flags);
-    bool denoised = (parameters.passes & DENOISING_DATA) == 0u
-                 || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
+    bool denoised =
+        (parameters.passes & DENOISING_DATA) == 0u || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
     bool colored = straight && (parameters.passes & COLORS) != 0u;
     if (!keeps_paths && !looks && denoised && !colored) return;
     Closure closure = closures[index];
     hit = closure_hit(closure);
-    uint kind = (hit ? PASS_PATH_HIT : 0u) | (straight ? PASS_PATH_STRAIGHT : 0u)
-              | (denoised ? 0u : PASS_PATH_DENOISED);
+    uint kind =
+        (hit ? PASS_PATH_HIT : 0u) | (straight ? PASS_PATH_STRAIGHT : 0u) | (denoised ? 0u : PASS_PATH_DENOISED);
     if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
         path.flags |= PATH_DENOISING_DATA_FOUND;

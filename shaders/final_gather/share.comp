@@ -37,7 +37,10 @@ const float OWN_RAYS = 4.0;
 const mat2 GOLDEN_ROTATION = mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888);
 
 // Where a ray arrived, by its place and the normal there.
-struct Hit { vec3 place; vec3 normal; };
+struct Hit {
+    vec3 place;
+    vec3 normal;
+};
 
 Hit unpack_hit(uvec4 bits) { return Hit(uintBitsToFloat(bits.xyz), unpack_unit_vector(bits.w)); }
 
@@ -89,12 +92,13 @@ void main() {
         vec3 found = found_by(other_index);
         if (found != vec3(0.0)) {
             Hit there = unpack_hit(hit_of(other_index));
-            sum += found * (share * balanced(flight(vertex.xyz, normal, there, scale),
-                                             flight(other.xyz, other_normal, there, scale), part));
+            sum += found
+                   * (share
+                      * balanced(flight(vertex.xyz, normal, there, scale),
+                                 flight(other.xyz, other_normal, there, scale), part));
         }
         if (found_own)
-            sum += own * (share * part
-                          * balanced(own_flight, flight(other.xyz, other_normal, hit, scale), part));
+            sum += own * (share * part * balanced(own_flight, flight(other.xyz, other_normal, hit, scale), part));
     }
     radiances[index].rgb += weight_of(index) * sum / total;
 }

@@ -17,8 +17,8 @@ in float view_depth;
 in vec3 to_viewer;
 in vec3 normal;
 layout(location = 0) out vec4 combined;
-layout(location = 1) out vec4 surface_seen;   // normal toward the viewer, and view depth
-layout(location = 2) out vec2 surface_number; // which instance, from 1, and material, odd where it is specular
+layout(location = 1) out vec4 surface_seen;    // normal toward the viewer, and view depth
+layout(location = 2) out vec2 surface_number;  // which instance, from 1, and material, odd where it is specular
 
 const float SPECULAR_ROUGHNESS = 0.5;
 

@@ -16,7 +16,7 @@ vec2 sample_polygon(uint corners, float turn, vec2 u) {
 // Meters to the right and upward; (0, 0) for a pinhole.
 vec2 aperture_point(vec2 u) {
     vec2 point = camera.aperture_blades < 3u ? sample_disk(u)
-                 : sample_polygon(camera.aperture_blades, camera.aperture_rotation, u);
+                                             : sample_polygon(camera.aperture_blades, camera.aperture_rotation, u);
     point.x /= camera.aperture_ratio;
     return camera.aperture_radius * point;
 }

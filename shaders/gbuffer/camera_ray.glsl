@@ -8,7 +8,13 @@
 
 // `passed` is the way from the camera to the origin, at the clip start; `area` is what a pixel sees at
 // distance 1 across the ray, m^2, or everywhere where rays are parallel. `reach` 0: the pixel sees nothing.
-struct CameraRay { vec3 origin; vec3 direction; float passed; float reach; float area; };
+struct CameraRay {
+    vec3 origin;
+    vec3 direction;
+    float passed;
+    float reach;
+    float area;
+};
 
 // Where the middle of a pixel lies on the window.
 vec2 window_point(uint index) {

@@ -3,7 +3,10 @@
 #include "gbuffer/camera_ray.glsl"
 
 // A direction, and the solid angle that its surroundings cover over their area in the frame; 0: nothing is seen.
-struct PanoramaPoint { vec3 direction; float solid_angle; };
+struct PanoramaPoint {
+    vec3 direction;
+    float solid_angle;
+};
 
 vec3 longitude_latitude(float longitude, float latitude) {
     return vec3(sin(longitude) * cos(latitude), sin(latitude), cos(longitude) * cos(latitude));
@@ -71,12 +74,12 @@ PanoramaPoint fisheye_lens_polynomial(vec2 at) {
 
 PanoramaPoint panorama_point(vec2 at) {
     switch (camera.projection) {
-        case PROJECTION_EQUIRECTANGULAR: return equirectangular(at);
-        case PROJECTION_EQUIANGULAR_CUBEMAP_FACE: return equiangular_cubemap_face(at);
-        case PROJECTION_MIRRORBALL: return mirrorball(at);
-        case PROJECTION_FISHEYE_EQUIDISTANT: return fisheye_equidistant(at);
-        case PROJECTION_FISHEYE_EQUISOLID: return fisheye_equisolid(at);
-        case PROJECTION_FISHEYE_LENS_POLYNOMIAL: return fisheye_lens_polynomial(at);
+    case PROJECTION_EQUIRECTANGULAR: return equirectangular(at);
+    case PROJECTION_EQUIANGULAR_CUBEMAP_FACE: return equiangular_cubemap_face(at);
+    case PROJECTION_MIRRORBALL: return mirrorball(at);
+    case PROJECTION_FISHEYE_EQUIDISTANT: return fisheye_equidistant(at);
+    case PROJECTION_FISHEYE_EQUISOLID: return fisheye_equisolid(at);
+    case PROJECTION_FISHEYE_LENS_POLYNOMIAL: return fisheye_lens_polynomial(at);
     }
     return central_cylindrical(at);
 }

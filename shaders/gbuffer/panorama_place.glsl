@@ -30,20 +30,16 @@ vec2 panorama_place(vec3 direction) {
     float off_axis = acos(clamp(direction.z, -1.0, 1.0));
     vec2 toward = unit_or_none(direction.xy);
     switch (camera.projection) {
-        case PROJECTION_EQUIRECTANGULAR: {
-            vec2 angles = vec2(atan(direction.x, direction.z), asin(clamp(direction.y, -1.0, 1.0)));
-            return (angles - range.xz) / (range.yw - range.xz);
-        }
-        case PROJECTION_EQUIANGULAR_CUBEMAP_FACE:
-            return 0.5 + vec2(atan(direction.x, direction.z), atan(direction.y, direction.z)) * (2.0 / PI);
-        case PROJECTION_MIRRORBALL:
-            return 0.5 + 0.5 * normalize(direction + vec3(0.0, 0.0, 1.0)).xy;
-        case PROJECTION_FISHEYE_EQUIDISTANT:
-            return 0.5 + toward * (off_axis / camera.field_of_view);
-        case PROJECTION_FISHEYE_EQUISOLID:
-            return 0.5 + toward * (2.0 * camera.lens * sin(0.5 * off_axis)) / camera.sensor;
-        case PROJECTION_FISHEYE_LENS_POLYNOMIAL:
-            return 0.5 + toward * lens_polynomial_distance(off_axis) / camera.sensor;
+    case PROJECTION_EQUIRECTANGULAR: {
+        vec2 angles = vec2(atan(direction.x, direction.z), asin(clamp(direction.y, -1.0, 1.0)));
+        return (angles - range.xz) / (range.yw - range.xz);
+    }
+    case PROJECTION_EQUIANGULAR_CUBEMAP_FACE:
+        return 0.5 + vec2(atan(direction.x, direction.z), atan(direction.y, direction.z)) * (2.0 / PI);
+    case PROJECTION_MIRRORBALL: return 0.5 + 0.5 * normalize(direction + vec3(0.0, 0.0, 1.0)).xy;
+    case PROJECTION_FISHEYE_EQUIDISTANT: return 0.5 + toward * (off_axis / camera.field_of_view);
+    case PROJECTION_FISHEYE_EQUISOLID: return 0.5 + toward * (2.0 * camera.lens * sin(0.5 * off_axis)) / camera.sensor;
+    case PROJECTION_FISHEYE_LENS_POLYNOMIAL: return 0.5 + toward * lens_polynomial_distance(off_axis) / camera.sensor;
     }
     vec2 place = vec2(atan(direction.x, direction.z), direction.y / length(direction.xz));
     return (place - range.xz) / (range.yw - range.xz);
@@ -51,7 +47,7 @@ vec2 panorama_place(vec3 direction) {
 
 // Of the frame's width, how far apart the same direction is shown again; 0: nowhere.
 float panorama_period() {
-    bool around = camera.projection == PROJECTION_EQUIRECTANGULAR
-               || camera.projection == PROJECTION_CENTRAL_CYLINDRICAL;
+    bool around =
+        camera.projection == PROJECTION_EQUIRECTANGULAR || camera.projection == PROJECTION_CENTRAL_CYLINDRICAL;
     return around ? 2.0 * PI / (camera.panorama_range.y - camera.panorama_range.x) : 0.0;
 }

@@ -18,6 +18,6 @@ vec4 clip_position(vec3 p) {
 // Logarithmic in perspective: the same relative resolution near and far.
 float fragment_depth(float view_depth) {
     return camera.projection == PROJECTION_ORTHOGRAPHIC
-        ? (view_depth - camera.clip_start) / (camera.clip_end - camera.clip_start)
-        : log(view_depth / camera.clip_start) / log(camera.clip_end / camera.clip_start);
+               ? (view_depth - camera.clip_start) / (camera.clip_end - camera.clip_start)
+               : log(view_depth / camera.clip_start) / log(camera.clip_end / camera.clip_start);
 }

@@ -38,9 +38,7 @@ vec3 three_floats(uint index) {
 }
 
 // By the bits, which no compiler may assume to be those of a number.
-bool reasonable(vec3 p) {
-    return all(lessThan(floatBitsToUint(p) & 0x7fffffffu, uvec3(floatBitsToUint(1e15))));
-}
+bool reasonable(vec3 p) { return all(lessThan(floatBitsToUint(p) & 0x7fffffffu, uvec3(floatBitsToUint(1e15)))); }
 
 void main() {
     uint index = invocation_index(), triangle = parameters.first_triangle + index;
@@ -74,9 +72,9 @@ void main() {
         float size = length(normal);
         // A normal of 0, as those of flat faces are, or one that is not finite gives way to the triangle's.
         normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size)
-                     : pack_unit_vector(face / max(length(face), 1e-30));
-        uvs[k] = instance.mesh_uv == NO_UV ? vec2(0.0)
-                 : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
+                                               : pack_unit_vector(face / max(length(face), 1e-30));
+        uvs[k] =
+            instance.mesh_uv == NO_UV ? vec2(0.0) : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
     }
     // A triangle without finite corners becomes a point, which no ray meets. Fourth components: the sets that it is in
     // and whether it casts no shadow (common/light_sets.glsl); its chance among the emitters, and its traits as one
@@ -85,7 +83,7 @@ void main() {
         triangle_vertices[3u * index + k] =
             vec4(finite ? points[k] : parameters.fallback_point, k == 0u ? instance.set_code : 0.0);
     uint slot = min(triangle_slots[local], instance.slot_count - 1u);
-    attributes[index] = TriangleAttributes(normals[0], normals[1], normals[2],
-                                              slot_materials[instance.first_slot + slot],
-                                              uvs[0], uvs[1], uvs[2], number, 0u);
+    attributes[index] =
+        TriangleAttributes(normals[0], normals[1], normals[2], slot_materials[instance.first_slot + slot], uvs[0],
+                           uvs[1], uvs[2], number, 0u);
 }

@@ -83,7 +83,11 @@ void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, v
 
 // How a ray and shadow rays from where it began find the environment: the pdf of these in 1/sr, as photons know it and
 // as it is at that place; and whether neighbors share what the ray finds.
-struct EnvironmentView { float plain_pdf; float pdf; bool is_shared; };
+struct EnvironmentView {
+    float plain_pdf;
+    float pdf;
+    bool is_shared;
+};
 
 // An even environment is left to rays, but for what comes through portals. Neighbors share it: its shadows are as soft
 // as those of indirect light.
@@ -113,7 +117,8 @@ float environment_weight(CameraPath path, EnvironmentView view) {
 vec3 found_world(uint flags, uint depth, vec3 direction) {
     bool gathered = (flags & PATH_GATHERED) != 0u;
     if ((camera_ray_kind(flags) & iteration.world_visibility & RAYS_WITH_VISIBILITY) == 0u
-        || (gathered && bounces_of(depth) > iteration.world_bounces + 1u)) return vec3(0.0);
+        || (gathered && bounces_of(depth) > iteration.world_bounces + 1u))
+        return vec3(0.0);
     return world_radiance(direction, (flags & PATH_STRAIGHT) != 0u && !gathered);
 }
 
@@ -145,8 +150,7 @@ float emission_weight(ScatterPoint from, uint triangle) {
     if (!(from.pdf > 0.0)) return 1.0;
     float pdf = emissive_triangle_pdf(from.lit.position, triangle);
     uint leaf = uint(triangle_vertices[3u * triangle + 1u].w);
-    if (pdf > 0.0 && leaf > 0u)
-        pdf *= light_probability(from.lit, from.environment_irradiance, KIND_TRIANGLES, leaf);
+    if (pdf > 0.0 && leaf > 0u) pdf *= light_probability(from.lit, from.environment_irradiance, KIND_TRIANGLES, leaf);
     else pdf = 0.0;
     return scatter_mis_weight(from.pdf, pdf);
 }
@@ -192,8 +196,8 @@ struct Event {
     vec3 normal;        // of a diffuse one on the side of the direction
     float probability;  // of those that all shares stand for
     bool transmitted;
-    float pdf;      // in 1/sr, where shadow rays sample the same light; else 0
-    uint flags;         // of the path from here on
+    float pdf;   // in 1/sr, where shadow rays sample the same light; else 0
+    uint flags;  // of the path from here on
     uint scatter;
 };
 
@@ -207,16 +211,15 @@ Event diffuse_event(CameraPath path, Closure closure, float u, vec2 disk, vec4 s
     event.direction = cosine_hemisphere(event.normal, disk);
     event.weight = event.transmitted ? closure.translucent : closure.diffuse;
     event.pdf = event.probability * survival / total * max(dot(event.normal, event.direction), 0.0) / PI;
-    event.flags = (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH))
-                | PATH_DIFFUSE;
+    event.flags =
+        (path.flags & ~(PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH)) | PATH_DIFFUSE;
     event.scatter = SCATTER_DIFFUSE;
     return event;
 }
 
 Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shares) {
     bool shadow_rays_pass = (closure.flags & CLOSURE_SHADOWLESS) != 0u;
-    return Event(direction, closure.transparent, -direction, shares.x, true,
-                 shadow_rays_pass ? path.scatter_pdf : 0.0,
+    return Event(direction, closure.transparent, -direction, shares.x, true, shadow_rays_pass ? path.scatter_pdf : 0.0,
                  shadow_rays_pass ? path.flags | (path.scatter_pdf > 0.0 ? PATH_SEEN_THROUGH : 0u)
                                   : (path.flags & ~(PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH)) | PATH_CAUSTIC,
                  SCATTER_NONE);
@@ -241,13 +244,14 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     event.transmitted = sampled.transmitted;
     event.scatter = lobe_scatter(lobe.kind, sampled.transmitted);
     bool lights_found = iteration.next_event != 0u && !sampled.transmitted
-                     && looks_for_reflected_lights(lobe, shares, all.total, chosen, viewer,
-                                                   min(SMOOTHEST_LIT, iteration.specular_alpha));
-    event.flags = (path.flags & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND
-                                  | PATH_SEEN_THROUGH))
-                | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
-                | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
-                | dispersed_flag(closure, lobe, sampled.transmitted);
+                        && looks_for_reflected_lights(lobe, shares, all.total, chosen, viewer,
+                                                      min(SMOOTHEST_LIT, iteration.specular_alpha));
+    event.flags =
+        (path.flags
+         & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH))
+        | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
+        | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
+        | dispersed_flag(closure, lobe, sampled.transmitted);
     return event;
 }
 
@@ -298,7 +302,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
         event = diffuse_event(path, closure, u, on_disk, shares, total, survival);
         vec3 facing = event.transmitted ? -event.normal : event.normal;
         found_weight = diffuse_factor(closure, facing, viewer, event.direction, !event.transmitted)
-                     * terminator_factor(closure.flags, facing, event.direction);
+                       * terminator_factor(closure.flags, facing, event.direction);
     } else event = straight_event(path, closure, ray.direction, shares);
     if (event.probability <= 0.0) return;
     importons[index].history = history_word(history, scattered_history(history, event.scatter), path.depth);
@@ -311,13 +315,11 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
         path.throughput *= found_weight;
     } else if (sets_out) {
         // Rough lobes see in directions of their own, and diffuse ones all alike: those share what they find.
-        gathering_vertices[index] = GatheringVertex(closure.position, diffuse ? radius : 0.0, path.throughput,
-                                                    pack_unit_vector(event.normal), vec3(0.0), disk,
-                                                    closure.position + FAR_RADII * radius * event.direction,
-                                                    pack_unit_vector(-event.direction));
+        gathering_vertices[index] = GatheringVertex(
+            closure.position, diffuse ? radius : 0.0, path.throughput, pack_unit_vector(event.normal), vec3(0.0), disk,
+            closure.position + FAR_RADII * radius * event.direction, pack_unit_vector(-event.direction));
         path.throughput = found_weight;
-    }
-    else if (!gathered && event.scatter != SCATTER_NONE) gathering_vertices[index].position = closure.position;
+    } else if (!gathered && event.scatter != SCATTER_NONE) gathering_vertices[index].position = closure.position;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     float side = dot(event.direction, geometric);
     if (!(largest(path.throughput) > 0.0) || (event.transmitted ? side >= 0.0 : side <= 0.0)) return;
@@ -367,17 +369,18 @@ void main() {
     radiances[index] += vec4(weight, 1.0) * (seen + seen_surface(path, from, closure));
     float radius = vertex_radius(path, ray.direction, closure), most = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
-    uvec4 choices = pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed,
-                                STAGE_IMPORTONS << 24u));
+    uvec4 choices =
+        pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_IMPORTONS << 24u));
     vec4 u_lobe = scrambled_sobol4(iteration.number - 1u, choices).zxyw;
     float u_importon = scrambled_sobol(iteration.number - 1u, pcg4d(choices)).x;
     uint bounces = bounces_of(path.depth);
     bool is_seen = (path.flags & PATH_STRAIGHT) != 0u;
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathers = iteration.final_gather != 0u && bounces < iteration.camera_bounces
-                && path_gathers(path.flags, length_to_gather_by(closure), iteration.gathers_again_below);
-    PathShares shares = limited_shares(path_shares(index, closure, path.throughput, -ray.direction,
-                                                   iteration.specular_alpha, gathers, is_seen), bounces, is_seen);
+                   && path_gathers(path.flags, length_to_gather_by(closure), iteration.gathers_again_below);
+    PathShares shares = limited_shares(
+        path_shares(index, closure, path.throughput, -ray.direction, iteration.specular_alpha, gathers, is_seen),
+        bounces, is_seen);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
         gathering_vertices[index].hit = closure.position;
         gathering_vertices[index].hit_normal = closure.geometric_normal;
@@ -386,6 +389,5 @@ void main() {
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
                    bounces > iteration.camera_bounces ? 0.0 : most, u_importon,
                    (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
-    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe,
-          history);
+    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe, history);
 }

@@ -12,7 +12,13 @@ uniform Parameters { LightGBufferParameters parameters; };
 flat in uint job_number;
 flat in ivec2 view_corner;
 
-struct TexelFragment { LightView view; uint texel; uint triangle; vec2 depths; bool seen; };
+struct TexelFragment {
+    LightView view;
+    uint texel;
+    uint triangle;
+    vec2 depths;
+    bool seen;
+};
 
 TexelFragment texel_fragment() {
     uvec4 job = light_jobs[job_number];

@@ -17,7 +17,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     vec3 light = grouped_light_of(index, parameters.group, false) + radiances[index].rgb
-               + read_group_sum(index, parameters.group, false) * parameters.quantum;
+                 + read_group_sum(index, parameters.group, false) * parameters.quantum;
     uint place = 3u * (parameters.groups * index + parameters.group);
     for (uint channel = 0u; channel < 3u; ++channel) {
         float mean = iteration.number_in_film == 1u ? 0.0 : group_values[place + channel];

@@ -18,7 +18,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
     vec3 found = grouped_light_of(index, parameters.group, true)
-               + read_group_sum(index, parameters.group, true) * parameters.quantum;
+                 + read_group_sum(index, parameters.group, true) * parameters.quantum;
     if (parameters.group == iteration.world_group) found += gathering_vertices[index].found;
     found_radiances[index] = vec4(found, 0.0);
 }

@@ -45,8 +45,9 @@ void main() {
         path_throughput = path.throughput;
         if ((path.flags & PATH_GATHERED) != 0u) path_throughput *= gathering_vertices[path_index].weight;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
-        passed = path_throughput * visible_light(scatter_point(path, ray, scattered_at(path_index, path, ray)), ray,
-                                                 distance, camera_ray_kind(path.flags), path_absorption(path.flags));
+        passed = path_throughput
+                 * visible_light(scatter_point(path, ray, scattered_at(path_index, path, ray)), ray, distance,
+                                 camera_ray_kind(path.flags), path_absorption(path.flags));
     }
     seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
 }

@@ -26,8 +26,7 @@ void main() {
         bool caustic = (history & HISTORY_CAUSTIC) != 0u, after_diffuse = (history & HISTORY_DIFFUSE) != 0u;
         found_caustics[index].rgb += light * (caustic ? vec3(1.0) : after_diffuse ? glossy + transmission : vec3(0.0));
     } else if (parameters.scattered == 0u) return;
-    else if (first_scatter(history) != SCATTER_NONE)
-        add_scattered_light(first_scatter(history), true, index, light);
+    else if (first_scatter(history) != SCATTER_NONE) add_scattered_light(first_scatter(history), true, index, light);
     else {
         add_scattered_light(SCATTER_DIFFUSE, false, index, light * (1.0 - glossy - transmission));
         add_scattered_light(SCATTER_GLOSSY, false, index, light * glossy);

@@ -37,11 +37,13 @@ vec3 world_radiance(vec3 direction, bool seen) {
 bool environment_is_even() { return iteration.environment_width == 0u; }
 
 // A distribution lists the cumulated shares of the rows, then those of the cells within each row.
-struct DirectionTable { uint first; uint width; uint height; };
+struct DirectionTable {
+    uint first;
+    uint width;
+    uint height;
+};
 
-DirectionTable world_table() {
-    return DirectionTable(0u, iteration.environment_width, iteration.environment_height);
-}
+DirectionTable world_table() { return DirectionTable(0u, iteration.environment_width, iteration.environment_height); }
 
 uint environment_search(uint first, uint count, float u) {
     uint low = 0u, high = count - 1u;
@@ -67,7 +69,7 @@ float table_pdf(DirectionTable table, vec3 direction) {
     vec2 uv = direction_to_equirectangular(direction);
     uvec2 cell = table_cell(table, uv);
     float share = environment_share(table.first, cell.y)
-                * environment_share(table.first + table.height + cell.y * table.width, cell.x);
+                  * environment_share(table.first + table.height + cell.y * table.width, cell.x);
     return share * float(table.width) * float(table.height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
 }
 

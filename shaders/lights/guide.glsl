@@ -35,9 +35,12 @@ uint choose_guide_cell(Light light, uint bits) {
 // From the unit cubes to a cell's part of them.
 void place_in_cell(Light light, uint cell, inout vec2 place, inout vec2 direction) {
     uvec4 at;
-    at.x = cell % light.cells.x; cell /= light.cells.x;
-    at.y = cell % light.cells.y; cell /= light.cells.y;
-    at.z = cell % light.cells.z; at.w = cell / light.cells.z;
+    at.x = cell % light.cells.x;
+    cell /= light.cells.x;
+    at.y = cell % light.cells.y;
+    cell /= light.cells.y;
+    at.z = cell % light.cells.z;
+    at.w = cell / light.cells.z;
     vec4 inside = (vec4(at) + vec4(place, direction)) / vec4(light.cells);
     place = inside.xy;
     direction = inside.zw;

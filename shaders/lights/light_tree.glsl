@@ -23,7 +23,12 @@ float cosine_of_difference(float cosine, float less_cosine) {
 }
 
 // Where light is asked for: one side of the surface may be all that it can reach; in a light set.
-struct LitPoint { vec3 position; vec3 normal; bool both_sides; uint light_set; };
+struct LitPoint {
+    vec3 position;
+    vec3 normal;
+    bool both_sides;
+    uint light_set;
+};
 
 // The light set of the object that a triangle is of; 0 where lights shine on all alike.
 uint light_set_at(uint triangle) {
@@ -66,7 +71,11 @@ float sun_importance(LightNode sun, LitPoint point) {
 }
 
 // Number of the light among lights[], and of the triangle among emissive_triangles[]. probability 0: none gives any.
-struct LightChoice { uint light; uint triangle; float probability; };
+struct LightChoice {
+    uint light;
+    uint triangle;
+    float probability;
+};
 
 // Down a tree: sets the leaf's member, and returns its probability.
 float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep, out uint member) {
@@ -74,7 +83,7 @@ float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep
     uint node = 1u;
     for (uint level = 1u; node < leaves; ++level) {
         float low = node_importance(light_nodes[first + 2u * node], point),
-            high = node_importance(light_nodes[first + 2u * node + 1u], point);
+              high = node_importance(light_nodes[first + 2u * node + 1u], point);
         if (!(low + high > 0.0)) return 0.0;
         float low_probability = low / (low + high);
         if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
@@ -95,7 +104,7 @@ float leaf_probability(uint first, uint leaves, LitPoint point, uint leaf) {
     for (int level = findMSB(leaf); level > 0; --level) {
         uint node = leaf >> uint(level);
         float low = node_importance(light_nodes[first + 2u * node], point),
-            high = node_importance(light_nodes[first + 2u * node + 1u], point);
+              high = node_importance(light_nodes[first + 2u * node + 1u], point);
         if (!(low + high > 0.0)) return 0.0;
         float low_probability = low / (low + high);
         if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
@@ -109,8 +118,7 @@ float leaf_probability(uint first, uint leaves, LitPoint point, uint leaf) {
 const uint KIND_OBJECTS = 0u, KIND_TRIANGLES = 1u, KIND_ENVIRONMENT = 2u, KIND_FIRST_SUN = 3u;
 
 float kind_importance(uint kind, LitPoint point, float environment_irradiance) {
-    if (kind >= KIND_FIRST_SUN)
-        return sun_importance(light_nodes[iteration.first_sun + kind - KIND_FIRST_SUN], point);
+    if (kind >= KIND_FIRST_SUN) return sun_importance(light_nodes[iteration.first_sun + kind - KIND_FIRST_SUN], point);
     if (kind == KIND_ENVIRONMENT) return environment_irradiance;
     bool objects = kind == KIND_OBJECTS;
     return tree_importance(objects ? 0u : iteration.triangle_tree,
@@ -145,9 +153,9 @@ float light_probability(LitPoint point, float environment_irradiance, uint kind,
     float probability = kind_probability(own, total, shining);
     if (kind >= KIND_FIRST_SUN) return probability;
     bool objects = kind == KIND_OBJECTS;
-    return probability * leaf_probability(objects ? 0u : iteration.triangle_tree,
-                                          objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves,
-                                          point, leaf);
+    return probability
+           * leaf_probability(objects ? 0u : iteration.triangle_tree,
+                              objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves, point, leaf);
 }
 
 // environment_irradiance: what the environment counts for, W/m^2. u_deep takes over where u has been used up.
@@ -167,7 +175,7 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     uint chosen = kinds;
     for (uint kind = 0u; kind < kinds; ++kind) {
         float importance = kind < 4u ? importances[kind]
-                           : sun_importance(light_nodes[iteration.first_sun + kind - KIND_FIRST_SUN], point);
+                                     : sun_importance(light_nodes[iteration.first_sun + kind - KIND_FIRST_SUN], point);
         if (!(importance > 0.0)) continue;
         float probability = kind_probability(importance, total, shining);
         chosen = kind;
@@ -177,14 +185,13 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     }
     u = clamp(u / choice.probability, 0.0, 0.99999994);
     if (chosen == KIND_ENVIRONMENT) choice.light = iteration.world_light;
-    else if (chosen >= KIND_FIRST_SUN)
-        choice.light = light_nodes[iteration.first_sun + chosen - KIND_FIRST_SUN].member;
+    else if (chosen >= KIND_FIRST_SUN) choice.light = light_nodes[iteration.first_sun + chosen - KIND_FIRST_SUN].member;
     else {
         bool objects = chosen == KIND_OBJECTS;
         uint member = 0u;
         choice.probability *= choose_leaf(objects ? 0u : iteration.triangle_tree,
-                                          objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves,
-                                          point, u, u_deep, member);
+                                          objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves, point,
+                                          u, u_deep, member);
         choice.light = objects ? member : iteration.mesh_light;
         choice.triangle = objects ? 0u : member;
     }
@@ -202,15 +209,22 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
 // Where a ray was scattered that may meet lights, as shadow rays from there choose among these.
 struct ScatterPoint {
     LitPoint lit;
-    float environment_irradiance; // W/m^2, as choose_light_at was given it
-    float pdf;                    // of the ray's direction, 1/sr; 0 where no shadow rays look for the same light
-    bool gathers;                 // whether the ray gathers: it leaves some lights to shadow rays (is_shared_light)
-    uint bounces;                 // of the path there
+    float environment_irradiance;  // W/m^2, as choose_light_at was given it
+    float pdf;                     // of the ray's direction, 1/sr; 0 where no shadow rays look for the same light
+    bool gathers;                  // whether the ray gathers: it leaves some lights to shadow rays (is_shared_light)
+    uint bounces;                  // of the path there
 };
 
 // Radiance of all, and of one of them, chosen by the random number u, over its probability; which that is, and how far
 // off.
-struct PassedLights { vec3 radiance; vec3 chosen; uint light; float distance; float weights; float u; };
+struct PassedLights {
+    vec3 radiance;
+    vec3 chosen;
+    uint light;
+    float distance;
+    float weights;
+    float u;
+};
 
 // kind, leaf: by which shadow rays choose the light.
 void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, ScatterPoint from, vec3 direction,
@@ -250,8 +264,9 @@ PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, ui
     while (sun < iteration.sun_count || node > 0u) {
         bool is_sun = sun < iteration.sun_count;
         LightNode at = light_nodes[is_sun ? iteration.first_sun + sun : node];
-        bool met = is_sun || (at.intensity > 0.0
-                              && ray_meets_box(at.low, at.high, from.lit.position, inverse_direction, distances.y));
+        bool met = is_sun
+                   || (at.intensity > 0.0
+                       && ray_meets_box(at.low, at.high, from.lit.position, inverse_direction, distances.y));
         uint kind = is_sun ? KIND_FIRST_SUN + sun : KIND_OBJECTS, leaf = node;
         if (is_sun) sun += 1u;
         else if (met && node < iteration.light_tree_leaves) {
@@ -282,7 +297,10 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set,
     do {
         LightNode at = light_nodes[iteration.triangle_tree + node];
         bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, nearest.distance);
-        if (met && node < iteration.triangle_tree_leaves) { node *= 2u; continue; }
+        if (met && node < iteration.triangle_tree_leaves) {
+            node *= 2u;
+            continue;
+        }
         uint triangle = met ? emissive_triangles[at.member].triangle : NO_TRIANGLE;
         met = met && has_set(at.light_sets, light_set);
         if (met && triangle != from_triangle && (emissive_triangles[at.member].traits & EMITTER_REFLECTED) != 0u) {

@@ -94,11 +94,18 @@ void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
 }
 
 // What varies is asked for later, where a place has been sampled (lights/emitters.comp).
-vec3 sampled_radiance(EmissiveTriangle emissive) { 
+vec3 sampled_radiance(EmissiveTriangle emissive) {
     return (emissive.traits & EMITTER_UNEVEN) != 0u ? vec3(1.0) : emissive.radiance;
 }
 
-struct TrianglePoint { vec3 position; vec3 normal; uint triangle; vec3 radiance; float pdf; float ray_offset; };
+struct TrianglePoint {
+    vec3 position;
+    vec3 normal;
+    uint triangle;
+    vec3 radiance;
+    float pdf;
+    float ray_offset;
+};
 
 // A point on the emissive meshes with its pdf by area.
 TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
@@ -117,7 +124,13 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
 
 // Light toward a point: radiance divided by the pdf in 1/sr, and that pdf (0 for lights without
 // extent). weight 0: nothing arrives.
-struct LightSample { vec3 direction; float distance; vec3 weight; uint triangle; float pdf; };
+struct LightSample {
+    vec3 direction;
+    float distance;
+    vec3 weight;
+    uint triangle;
+    float pdf;
+};
 
 const LightSample NO_LIGHT_SAMPLE = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
 
@@ -160,10 +173,12 @@ LightSample sample_cone_light(Light light, vec3 point, vec2 u) {
         if (light.radius > 0.0) return sample_from_within(light, to_center, u);
         return result;
     }
-    float one_minus_cosine = sun ? 1.0 - light.cosine_cone
-                             : soft ? soft_light_cone(light, to_center) : sine2 / (1.0 + sqrt(1.0 - sine2));
-    vec3 axis = sun ? light.normal
-                : soft ? to_center / max(length(to_center), 1e-20) : to_center * inversesqrt(distance2);
+    float one_minus_cosine = sun    ? 1.0 - light.cosine_cone
+                             : soft ? soft_light_cone(light, to_center)
+                                    : sine2 / (1.0 + sqrt(1.0 - sine2));
+    vec3 axis = sun    ? light.normal
+                : soft ? to_center / max(length(to_center), 1e-20)
+                       : to_center * inversesqrt(distance2);
     result.direction = sample_cone(axis, one_minus_cosine, u);
     if (sun) {
         result.direction = -result.direction;
@@ -211,7 +226,7 @@ bool sampled_by_solid_angle(Light light, vec3 point) {
 // Coordinates along both axes of an area light, which are not orthogonal where it is sheared.
 vec2 area_light_coordinates(Light light, vec3 offset) {
     float uu = dot(light.axis_u, light.axis_u), uv = dot(light.axis_u, light.axis_v),
-        vv = dot(light.axis_v, light.axis_v);
+          vv = dot(light.axis_v, light.axis_v);
     float pu = dot(offset, light.axis_u), pv = dot(offset, light.axis_v);
     return vec2(pu * vv - pv * uv, pv * uu - pu * uv) / (uu * vv - uv * uv);
 }
@@ -260,8 +275,8 @@ vec3 sample_spread_disk(Light light, vec3 point, vec2 u) {
 float spread_disk_pdf(Light light, vec3 to_light) {
     float height = -dot(to_light, light.normal), radius = height * light.spread_tangent;
     float straight_on = light.spread_tangent * light.spread_scale, distance2 = dot(to_light, to_light);
-    return 3.0 * attenuation_toward(light, to_light) / (PI * radius * radius * straight_on)
-         * distance2 * sqrt(distance2) / height;
+    return 3.0 * attenuation_toward(light, to_light) / (PI * radius * radius * straight_on) * distance2
+           * sqrt(distance2) / height;
 }
 
 // Pdf in 1/sr with which sample_surface_light gives the direction to a place on an area light.
@@ -310,8 +325,8 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
     result.distance = length(to_light);
     result.direction = to_light / result.distance;
     result.weight = radiance / result.pdf;
-    bool arrives = (mesh || dot(point - light.position, light.normal) > 0.0) && result.pdf > 0.0
-                && result.distance > 0.0;
+    bool arrives =
+        (mesh || dot(point - light.position, light.normal) > 0.0) && result.pdf > 0.0 && result.distance > 0.0;
     if (!arrives) return NO_LIGHT_SAMPLE;
     return result;
 }
@@ -367,7 +382,7 @@ bool is_sphere(Light light) {
 vec3 emitted_factor(Light light, vec3 from_center, vec3 direction) {
     if (light.map_shape == 0u) return vec3(1.0);
     return light_factor(light, direction, is_sphere(light) ? normalize(from_center) : direction,
-                       is_area_light(light) ? area_light_coordinates(light, from_center) : vec2(0.0));
+                        is_area_light(light) ? area_light_coordinates(light, from_center) : vec2(0.0));
 }
 
 // Evenly on the disk of a sphere across a direction, from its center; forward: to the sphere from there.
@@ -485,8 +500,7 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
 }
 
 // The same of a light that may have nodes.
-vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
-                  out float pdf) {
+vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance, out float pdf) {
     vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, pdf);
     vec3 from_center = origin + distance * direction - light.position;
     return radiance * distance_factor(light, distance) * emitted_factor(light, from_center, -direction);

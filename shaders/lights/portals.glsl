@@ -30,7 +30,10 @@ uint choose_portal(vec3 point, inout float u) {
 
 // What is asked of portals from a point: the solid angles of those that face it, and the pdf in 1/sr with which
 // directions through them are taken; 0 of one that passes none. sampled: the portal that the direction was taken for.
-struct PortalView { float solid_angle; float pdf; };
+struct PortalView {
+    float solid_angle;
+    float pdf;
+};
 
 PortalView view_portals(vec3 point, vec3 direction, uint sampled) {
     PortalView view = PortalView(0.0, 0.0);
@@ -43,8 +46,8 @@ PortalView view_portals(vec3 point, vec3 direction, uint sampled) {
         vec3 offset = point - portal.position;
         vec3 to_portal = dot(offset, portal.normal) / max(cosine, 1e-20) * direction;
         // Rounding must not take a direction for one that misses its own portal.
-        bool passes = k == sampled || (cosine > 0.0
-                                       && is_on_area_light(portal, area_light_coordinates(portal, offset + to_portal)));
+        bool passes = k == sampled
+                      || (cosine > 0.0 && is_on_area_light(portal, area_light_coordinates(portal, offset + to_portal)));
         if (passes) view.pdf += sampled_by_solid_angle(portal, point) ? 1.0 : angle * pdf_by_area(portal, to_portal);
     }
     view.pdf /= max(view.solid_angle, 1e-30);

@@ -9,11 +9,11 @@
 
 struct ClosureBuilder {
     Closure closure;
-    vec3 viewer;       // unit vector to where the path comes from
+    vec3 viewer;  // unit vector to where the path comes from
     vec3 geometric;
-    vec3 shading;      // the normal that shaders have without one of their own
+    vec3 shading;  // the normal that shaders have without one of their own
     bool backfacing;
-    float u_choice;    // a random number in [0, 1), renewed by each choice
+    float u_choice;       // a random number in [0, 1), renewed by each choice
     bool seen_by_camera;  // by its ray, at most through what is transparent
     int lobes;
 };
@@ -42,8 +42,8 @@ void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 }
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
-    ClosureBuilder builder = ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice,
-                                            false, 0);
+    ClosureBuilder builder =
+        ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice, false, 0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
@@ -84,7 +84,7 @@ vec3 reflecting_normal(ClosureBuilder builder, vec3 normal) {
     float root = sqrt(max(linear * linear - square * (z + least) * (z + least), 0.0));
     // The smaller root without the difference of numbers alike.
     float q = x < 0.0 ? 0.5 * (linear + root) / max(square, 1e-12)
-              : 0.5 * (z + least) * (z + least) / max(linear + root, 1e-12);
+                      : 0.5 * (z + least) * (z + least) / max(linear + root, 1e-12);
     q = clamp(q, 0.0, 1.0);
     return normalize(sqrt(1.0 - q) * across + sqrt(q) * g);
 }
@@ -99,8 +99,8 @@ void add_diffuse_parts(inout ClosureBuilder builder, vec3 diffuse, vec3 transluc
     float held = largest(held_diffuse) + largest(held_translucent);
     if (largest(diffuse) <= 0.0 && roughness == 0u) roughness = builder.closure.diffuse_roughness;
     bool free = largest(held_diffuse) <= 0.0 && (builder.closure.diffuse_roughness & ROUGH_BEHIND) == 0u;
-    bool alike = packed_normal == builder.closure.diffuse_normal
-                 && (free || roughness == builder.closure.diffuse_roughness);
+    bool alike =
+        packed_normal == builder.closure.diffuse_normal && (free || roughness == builder.closure.diffuse_roughness);
     if (held <= 0.0 || alike) {
         builder.closure.diffuse_normal = packed_normal;
         builder.closure.diffuse_roughness = roughness;

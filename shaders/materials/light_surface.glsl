@@ -23,10 +23,9 @@ Surface light_surface(vec2 pixel, vec3 map_direction) {
     bool places = parameters.light_shape == MAP_PLACES, cone = parameters.light_shape == MAP_CONE;
     if (places) direction = parameters.light_normal;
     if (cone) direction = normalize(parameters.light_normal + at.x * u + at.y * v);
-    Surface surface = Surface(parameters.light_position + parameters.light_radius * direction, direction, direction,
-                           direction, pixel,
-                           vec3(0.0), vec3(0.0), NO_TRIANGLE, 0u, false, RAY_DIFFUSE, parameters.ray_length, 0u,
-                              0u);
+    Surface surface =
+        Surface(parameters.light_position + parameters.light_radius * direction, direction, direction, direction, pixel,
+                vec3(0.0), vec3(0.0), NO_TRIANGLE, 0u, false, RAY_DIFFUSE, parameters.ray_length, 0u, 0u);
     if (parameters.light_kind == LIGHT_SURFACE_AREA) {
         surface.normal = surface.geometric = parameters.light_normal;
         surface.position = parameters.light_position + (places ? at.x * u + at.y * v : vec3(0.0));

@@ -8,7 +8,10 @@
 // Films thinner than this, nm, are none.
 const float THINNEST_FILM = 0.1;
 
-struct Film { float thickness; float ior; };
+struct Film {
+    float thickness;
+    float ior;
+};
 
 // Microfacets under a film follow the curve of the bare base, with the reflectance at normal incidence that gives what
 // the film reflects at the angle of the viewer to the normal; rise: of the curve, there.
@@ -17,7 +20,13 @@ vec3 at_normal_incidence(vec3 reflectance, float rise) {
 }
 
 // Where a node's microfacets lie: normal packed and unpacked, anisotropy packed, roughness of the mean alpha.
-struct Microfacets { vec3 normal; uint packed_normal; uint anisotropy; float alpha; float cosine; };
+struct Microfacets {
+    vec3 normal;
+    uint packed_normal;
+    uint anisotropy;
+    float alpha;
+    float cosine;
+};
 
 Microfacets isotropic_microfacets(ClosureBuilder builder, vec3 normal, float roughness) {
     uint packed_normal = pack_unit_vector(reflecting_normal(builder, normal));

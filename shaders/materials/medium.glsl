@@ -18,13 +18,15 @@ uint enter_medium(uint media, uint medium) {
 uint leave_medium(uint media, uint medium) {
     uint bits = medium_bits(), mask = (1u << bits) - 1u;
     for (uint at = 0u; (media >> at) != 0u; at += bits)
-        if ((media >> at & mask) == medium)
-            return (media & ((1u << at) - 1u)) | media >> (at + bits) << at;
+        if ((media >> at & mask) == medium) return (media & ((1u << at) - 1u)) | media >> (at + bits) << at;
     return media;
 }
 
 // Coefficients in 1/m, and radiance in W/(m^2 sr) by length.
-struct Medium { vec3 absorption; vec3 emission; };
+struct Medium {
+    vec3 absorption;
+    vec3 emission;
+};
 
 Medium path_medium(uint flags) {
     Medium medium = Medium(vec3(0.0), vec3(0.0));
@@ -48,8 +50,8 @@ vec3 segment_emission(uint flags, float distance) {
     if (flags >> FIRST_MEDIUM == 0u) return vec3(0.0);
     Medium medium = path_medium(flags);
     vec3 depth = medium.absorption * distance, series = distance * (1.0 - 0.5 * depth);
-    vec3 length_seen = mix((1.0 - exp(-depth)) / max(medium.absorption, vec3(1e-30)), series,
-                           lessThan(depth, vec3(1e-3)));
+    vec3 length_seen =
+        mix((1.0 - exp(-depth)) / max(medium.absorption, vec3(1e-30)), series, lessThan(depth, vec3(1e-3)));
     return medium.emission * mix(length_seen, vec3(0.0), greaterThan(length_seen, vec3(1e20)));
 }
 

@@ -58,7 +58,9 @@ float specular_ior(Principled p, out float f0) {
 }
 
 // What the film reflects, over each of the three that it lies on: no reflectances where it lies on none.
-struct Films { vec3 metal, glass, base; };
+struct Films {
+    vec3 metal, glass, base;
+};
 
 Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, float base_ior) {
     Films films = Films(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -76,8 +78,7 @@ Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, fl
     return films;
 }
 
-MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, float ior, vec3 film,
-                         inout vec3 weight) {
+MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, float ior, vec3 film, inout vec3 weight) {
     if (p.film.thickness > THINNEST_FILM) {
         vec3 beside = at_normal_incidence(film, dielectric_interpolation(at.cosine, ior));
         MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior);
@@ -122,7 +123,8 @@ void add_base(inout ClosureBuilder builder, Principled p, float ior, vec3 weight
 #ifdef READS_TEXELS
 #define LAYER_IS_DONE(lobe)
 #else
-#define LAYER_IS_DONE(lobe) if (lobe.kind != LOBE_NONE && node_weight > 0.0) add_lobe(builder, lobe);
+#define LAYER_IS_DONE(lobe) \
+    if (lobe.kind != LOBE_NONE && node_weight > 0.0) add_lobe(builder, lobe);
 #endif
 
 void add_principled(inout ClosureBuilder builder, float node_weight, Principled p) {
@@ -132,8 +134,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     builder.closure.transparent += vec3(node_weight * (1.0 - p.alpha));
     vec3 weight = vec3(node_weight * p.alpha);
     if (p.sheen > 0.0) {
-        vec3 normal = mix(given_normal(builder, p.normal), given_normal(builder, p.coat_normal),
-                          clamp(p.coat, 0.0, 1.0));
+        vec3 normal =
+            mix(given_normal(builder, p.normal), given_normal(builder, p.coat_normal), clamp(p.coat, 0.0, 1.0));
         vec3 tint = p.sheen * p.sheen_tint;
         float albedo;
         sheen = sheen_lobe(builder, weight * tint, p.sheen_roughness, normal, albedo);
@@ -144,8 +146,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     LAYER_IS_DONE(coat)
     builder.closure.emission += weight * p.emission;
 
-    Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic),
-                                             p.tangent, p.anisotropic_rotation);
+    Microfacets at = anisotropic_microfacets(builder, p.normal, p.roughness, sqrt(1.0 - 0.9 * p.anisotropic), p.tangent,
+                                             p.anisotropic_rotation);
     bool film = p.film.thickness > THINNEST_FILM;
     float f0, ior = specular_ior(p, f0);
     Films films = film_reflectances(builder, p, at, ior);
@@ -165,8 +167,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
                              sheet);
         else if (film) glass = covered_glass_lobe(even, share, share * passed, films.glass, relative);
         else
-            glass = glass_lobe(even, share, share * passed, p.specular_tint, min(passed, 1.0), relative,
-                               p.multiscatter);
+            glass =
+                glass_lobe(even, share, share * passed, p.specular_tint, min(passed, 1.0), relative, p.multiscatter);
         weight *= 1.0 - p.transmission;
     }
     LAYER_IS_DONE(glass)

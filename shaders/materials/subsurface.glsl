@@ -52,10 +52,10 @@ void add_subsurface(inout ClosureBuilder builder, vec3 weight, vec3 albedo, vec3
     }
     ior = clamp(ior, 1.01, 3.8);
     bool is_rough = method == SUBSURFACE_RANDOM_WALK_SKIN || method == SUBSURFACE_BURLEY;
-    material_subsurface = Subsurface(scattered / probability, albedo, mean_free_path(radius, albedo, ior, method),
-                                     clamp(anisotropy, -0.99, method == SUBSURFACE_RANDOM_WALK ? 0.99 : 0.9), ior,
-                                     is_rough ? 1.0 : alpha, method,
-                                     pack_unit_vector(reflecting_normal(builder, normal)));
+    material_subsurface =
+        Subsurface(scattered / probability, albedo, mean_free_path(radius, albedo, ior, method),
+                   clamp(anisotropy, -0.99, method == SUBSURFACE_RANDOM_WALK ? 0.99 : 0.9), ior, is_rough ? 1.0 : alpha,
+                   method, pack_unit_vector(reflecting_normal(builder, normal)));
 }
 
 // A closure of three lobes has no place for it: then it or the last lobe is chosen by its albedo.

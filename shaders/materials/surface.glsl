@@ -12,18 +12,18 @@ readonly buffer AttributeValues { uint attribute_values[]; };
 const uint NO_INSTANCE = 0xffffffffu;
 
 struct Surface {
-    vec3 position;      // meters from the parameters' world_origin; of a world: the direction
-    vec3 normal;        // shading normal, on the viewer's side
-    vec3 geometric;     // geometric normal, on the viewer's side
-    vec3 viewer;        // unit vector to where the path comes from
-    vec2 uv;            // of the UV map in use
+    vec3 position;   // meters from the parameters' world_origin; of a world: the direction
+    vec3 normal;     // shading normal, on the viewer's side
+    vec3 geometric;  // geometric normal, on the viewer's side
+    vec3 viewer;     // unit vector to where the path comes from
+    vec2 uv;         // of the UV map in use
     vec3 barycentrics;
-    vec3 beside;        // what surface_beside added to them
-    uint triangle;      // NO_TRIANGLE: a world or a light
-    uint instance;      // NO_INSTANCE: a world
+    vec3 beside;    // what surface_beside added to them
+    uint triangle;  // NO_TRIANGLE: a world or a light
+    uint instance;  // NO_INSTANCE: a world
     bool backfacing;
-    uint ray;           // one or more of the bits of common/ray_kinds.glsl
-    float ray_length;   // from the camera or the last event that was not straight through
+    uint ray;          // one or more of the bits of common/ray_kinds.glsl
+    float ray_length;  // from the camera or the last event that was not straight through
     uint ray_depth;
     uint transparent_depth;
 };
@@ -98,7 +98,7 @@ vec4 attribute_value(Surface surface, uint layer) {
     uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
     return surface.barycentrics.x * attribute_corner(place, local, 0u)
            + surface.barycentrics.y * attribute_corner(place, local, 1u)
-         + surface.barycentrics.z * attribute_corner(place, local, 2u);
+           + surface.barycentrics.z * attribute_corner(place, local, 2u);
 }
 
 // For tangents, which Cycles does not move along where a bump looks beside.

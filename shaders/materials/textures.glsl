@@ -59,8 +59,8 @@ vec4 filter_image(ImageEntry image, vec2 uv, int interpolation, int extension) {
         return sum;
     }
     return mix(mix(image_texel(image, i, extension), image_texel(image, i + ivec2(1, 0), extension), f.x),
-               mix(image_texel(image, i + ivec2(0, 1), extension), image_texel(image, i + ivec2(1, 1), extension),
-                   f.x), f.y);
+               mix(image_texel(image, i + ivec2(0, 1), extension), image_texel(image, i + ivec2(1, 1), extension), f.x),
+               f.y);
 }
 
 // As Cycles does it: filtered while still encoded and multiplied by alpha, then divided where alpha is used on its own.

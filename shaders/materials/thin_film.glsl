@@ -17,7 +17,10 @@ vec2 reflection_coefficients(float cosine, float from, float to, out float cosin
 
 // A metal below a film: indices and extinctions of the three channels, and where `follows` says so the F82 curve of
 // the unpolarized reflectance, from f0, that at normal incidence from within the film. No metal: index 0.
-struct FilmMetal { vec3 index, extinction, f0, tint; bool follows; };
+struct FilmMetal {
+    vec3 index, extinction, f0, tint;
+    bool follows;
+};
 
 const FilmMetal NO_METAL = FilmMetal(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), false);
 
@@ -59,8 +62,8 @@ vec3 interference_color(float path_difference, vec3 shift) {
     xyz[0].x += red * cos(2.2399e6 * phase);
     xyz[1].x += red * sin(2.2399e6 * phase);
     // Without a difference all channels are 1: what does not interfere is white.
-    const mat3 to_rec709 = mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314,
-                                0.0415560, 1.0572252);
+    const mat3 to_rec709 =
+        mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252);
     const vec3 white = 1.0685e-7 * vec3(1.2048843, 0.9483008, 0.9088427);
     return (to_rec709 * xyz[0] * cos(shift) - to_rec709 * xyz[1] * sin(shift)) / white;
 }
@@ -87,7 +90,7 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
         // over.
         vec3 shift = vec3(first[k] > 0.0 ? PI : 0.0) + phase;
         vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = passed * passed * inner / (1.0 - both),
-            term = repeated - passed;
+             term = repeated - passed;
         sum += outer + repeated;
         for (int order = 1; order <= orders; ++order) {
             term *= sqrt(both);

@@ -22,8 +22,8 @@ void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out
     if (film.thickness > THINNEST_FILM) {
         outside = thin_film_reflectance(cosine, film.thickness, 1.0, film.ior, ior, NO_METAL);
         // As in Cycles with indices relative to the sheet's, by which the film seems thinner from within.
-        inside = thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior,
-                                       NO_METAL);
+        inside =
+            thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior, NO_METAL);
     }
     vec3 kept = within2 > 0.0 ? pow(color, vec3(inversesqrt(within2))) : vec3(0.0), returned = inside * kept;
     passed = kept * (1.0 - outside) * (1.0 - inside) / max(1.0 - returned * returned, 1e-6);
@@ -41,9 +41,8 @@ void thin_glass_lobes(inout ClosureBuilder builder, Microfacets at, vec3 weight,
     at.alpha = sheet_alpha(at.alpha, ior);
     // Seen by the camera itself it is no hole in the picture.
     if (at.alpha > STRAIGHTEST_SHEET || builder.seen_by_camera)
-        sheet = microfacet_lobe(at, LOBE_SHEET,
-                                weight * passed * multiscatter_factor(white_albedos(at), vec3(1.0)), vec3(0.0),
-                                vec3(1.0), 1.0);
+        sheet = microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(white_albedos(at), vec3(1.0)),
+                                vec3(0.0), vec3(1.0), 1.0);
     else builder.closure.transparent += weight * passed;
 }
 

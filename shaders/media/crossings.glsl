@@ -11,7 +11,10 @@ const int MOST_CROSSINGS = 64;
 const vec3 OUTWARD = vec3(0.0137, 0.0073, 0.99987949);
 
 // The surface with a medium that a ray comes to next, and where it goes on behind that.
-struct Crossing { uint medium; bool leaves; };
+struct Crossing {
+    uint medium;
+    bool leaves;
+};
 
 Crossing next_crossing(inout Ray ray) {
     for (int count = 0; count < MOST_CROSSINGS; ++count) {

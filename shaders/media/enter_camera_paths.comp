@@ -35,7 +35,8 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
     Ray ray = rays[index];
-    uint media = parameters.has_camera == 0u ? media_before(ray, hits[index].triangle)
-        : media_beyond(parameters.camera_position, media_of_sources[iteration.light_count], ray.origin);
+    uint media = parameters.has_camera == 0u
+                     ? media_before(ray, hits[index].triangle)
+                     : media_beyond(parameters.camera_position, media_of_sources[iteration.light_count], ray.origin);
     camera_paths[index].flags |= media << FIRST_MEDIUM;
 }

@@ -27,7 +27,7 @@ void main() {
     uint source = light_of(index), kind = lights[source].kind;
     if (kind == LIGHT_SUN || kind == LIGHT_WORLD) return;
     vec3 origin = rays[index].origin;
-    uint media = kind == LIGHT_MESH ? media_at(origin)
-                                    : media_beyond(lights[source].position, media_of_sources[source], origin);
+    uint media =
+        kind == LIGHT_MESH ? media_at(origin) : media_beyond(lights[source].position, media_of_sources[source], origin);
     photon_paths[index].flags |= media << FIRST_MEDIUM;
 }

@@ -25,9 +25,7 @@ buffer MotionVectors { vec4 motion_vectors[]; };
 readonly buffer Camera;
 #include "gbuffer/panorama_place.glsl"
 
-vec3 between(vec3 v0, vec3 v1, vec3 v2, Hit hit) {
-    return (1.0 - hit.b1 - hit.b2) * v0 + hit.b1 * v1 + hit.b2 * v2;
-}
+vec3 between(vec3 v0, vec3 v1, vec3 v2, Hit hit) { return (1.0 - hit.b1 - hit.b2) * v0 + hit.b1 * v1 + hit.b2 * v2; }
 
 // Pixels from the lower left corner of the frame, as a camera sees a point.
 vec2 raster_at(vec3 point, mat4 world_to_camera, vec4 window) {
@@ -51,10 +49,10 @@ vec4 vector_at(Hit hit) {
     uint first = 3u * hit.triangle;
     vec3 here = between(triangle_vertices[first].xyz, triangle_vertices[first + 1u].xyz,
                         triangle_vertices[first + 2u].xyz, hit);
-    vec3 before = between(triangles_before[first].xyz, triangles_before[first + 1u].xyz,
-                          triangles_before[first + 2u].xyz, hit);
-    vec3 after = between(triangles_after[first].xyz, triangles_after[first + 1u].xyz,
-                         triangles_after[first + 2u].xyz, hit);
+    vec3 before =
+        between(triangles_before[first].xyz, triangles_before[first + 1u].xyz, triangles_before[first + 2u].xyz, hit);
+    vec3 after =
+        between(triangles_after[first].xyz, triangles_after[first + 1u].xyz, triangles_after[first + 2u].xyz, hit);
     vec2 center = raster_at(here, parameters.world_to_camera, parameters.window);
     vec2 place_before = raster_at(before, parameters.world_to_camera_before, parameters.window_before);
     vec2 place_after = raster_at(after, parameters.world_to_camera_after, parameters.window_after);

@@ -71,8 +71,9 @@ vec3 barycentrics(Hit hit) { return vec3(1.0 - hit.b1 - hit.b2, hit.b1, hit.b2);
 
 // From a triangle to where rays begin on its front.
 vec3 ray_offset_of(uint triangle, vec3 normal) {
-    return normal * ray_offset(normal, triangle_vertex(3u * triangle).xyz, triangle_vertex(3u * triangle + 1u).xyz,
-                               triangle_vertex(3u * triangle + 2u).xyz);
+    return normal
+           * ray_offset(normal, triangle_vertex(3u * triangle).xyz, triangle_vertex(3u * triangle + 1u).xyz,
+                        triangle_vertex(3u * triangle + 2u).xyz);
 }
 
 vec3 geometric_normal(uint triangle) {

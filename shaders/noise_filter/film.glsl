@@ -24,7 +24,7 @@ vec3 albedo_of(uint pixel) { return max(pass_values_at(parameters.albedo, pixel)
 // What is left as it is: photons, and lights that are seen.
 vec3 kept_light(uint pixel) {
     return photon_light[pixel].rgb + pass_values_at(parameters.emission, pixel)
-         + pass_values_at(parameters.environment, pixel);
+           + pass_values_at(parameters.environment, pixel);
 }
 
 // Black where the film holds no number.

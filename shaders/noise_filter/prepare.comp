@@ -27,7 +27,8 @@ float variance_around(ivec2 pixel, vec4 guide) {
             uint other = uint(y * size.x + x);
             vec4 around = guide_of(other);
             if (dot(around.xyz, guide.xyz) < SAME_NORMAL * dot(guide.xyz, guide.xyz)
-                || abs(around.w - guide.w) > SAME_DEPTH * guide.w) continue;
+                || abs(around.w - guide.w) > SAME_DEPTH * guide.w)
+                continue;
             float value = luminance(filtered_light(other) / albedo_of(other));
             sum += value;
             squares += value * value;

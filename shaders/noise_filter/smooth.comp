@@ -37,7 +37,7 @@ float steady_variance(ivec2 pixel, ivec2 last) {
     for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x)
             sum += texelFetch(signal_image, clamp(pixel + ivec2(x, y), ivec2(0), last), 0).w
-                 / float((1 << abs(x)) * (1 << abs(y)) * 4);
+                   / float((1 << abs(x)) * (1 << abs(y)) * 4);
     return sum;
 }
 
@@ -59,8 +59,8 @@ vec4 smoothed(ivec2 pixel, ivec2 last) {
                 float expected = dot(slope, vec2(offset));
                 float off = abs(around.w - guide.w - expected) / (abs(expected) + DEPTH_STEP * guide.w + 1e-20);
                 float brighter = abs(luminance(value.rgb) - bright) / (edge + 1e-20);
-                float facing = surface ? pow(max(dot(around.xyz, guide.xyz), 0.0), NORMAL_POWER)
-                                       : float(around.xyz == vec3(0.0));
+                float facing =
+                    surface ? pow(max(dot(around.xyz, guide.xyz), 0.0), NORMAL_POWER) : float(around.xyz == vec3(0.0));
                 weight *= facing * exp(-off - brighter);
             }
             sum += weight * vec4(value.rgb, weight * value.w);

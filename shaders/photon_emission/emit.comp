@@ -87,13 +87,13 @@ void main() {
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
     bool dark = !(largest(flux) > 0.0);
     uint path_flags = PHOTON_DIRECT | ((light.flags & RAY_DIFFUSE) == 0u ? PHOTON_NOT_DIFFUSE : 0u)
-        | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
-        | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
-        | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
+                      | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
+                      | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
+                      | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
     photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces);
     if (light.kind == LIGHT_WORLD)
         photon_origins[index] = PhotonOrigin(largest(world_radiance(-emission.direction)),
-                                                 world_shadow_ray_pdf(-emission.direction), light.max_bounces);
+                                             world_shadow_ray_pdf(-emission.direction), light.max_bounces);
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);

@@ -9,15 +9,29 @@
 #include "lights/guide.glsl"
 
 // pdf: of the direction from a place in 1/sr, or of the place across parallel rays in 1/m^2. reach: how far it goes.
-struct Emission { vec3 origin; uint triangle; vec3 direction; vec3 flux; float pdf; float reach; };
+struct Emission {
+    vec3 origin;
+    uint triangle;
+    vec3 direction;
+    vec3 flux;
+    float pdf;
+    float reach;
+};
 
 // Random numbers of one photon, whether it is aimed, and the share of those that are.
-struct EmissionChoice { vec2 place; vec2 direction; float part; float target; bool aimed; float aimed_share; };
+struct EmissionChoice {
+    vec2 place;
+    vec2 direction;
+    float part;
+    float target;
+    bool aimed;
+    float aimed_share;
+};
 
 // Pdf of both ways together over the plain one's measure: guided photons have the plain pdf times the
 // guide's; aimed ones that see no target have the plain one.
 float mixed_pdf(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen,
-                    EmissionChoice choice) {
+                EmissionChoice choice) {
     float guided = plain * guide_pdf(light, guide_cell(light, place, direction));
     return mix(guided, targets_seen ? aimed : plain, choice.aimed_share);
 }
@@ -31,7 +45,7 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
                                       : radius * sample_disk(choice.place);
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
     float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
-                                  seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
+                          seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
     vec3 origin = iteration.scene_center + place.x * t + place.y * b - radius * direction;
     return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
 }
@@ -45,9 +59,9 @@ Emission emit_from_point(Light light, EmissionChoice choice) {
     float cones = target_cones(light.position);
     bool seen = cones > 0.0, spot = light.kind == LIGHT_SPOT;
     vec3 direction = choice.aimed && seen
-                   ? sample_target_direction(light.position, cones, choice.target, choice.direction)
-                   : spot ? sample_cone(light.normal, light.spread_scale, choice.direction)
-                          : sample_sphere(choice.direction);
+                         ? sample_target_direction(light.position, cones, choice.target, choice.direction)
+                     : spot ? sample_cone(light.normal, light.spread_scale, choice.direction)
+                            : sample_sphere(choice.direction);
     float plain = 1.0 / (4.0 * PI);
     if (spot)
         plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
@@ -97,8 +111,8 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
                          : hemisphere_to_square(front ? normal : -normal, direction);
     if (both_sides) square.x = 0.5 * (square.x + (front ? 1.0 : 0.0));
     vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
-    float pdf = mixed_pdf(light, plain, place, square,
-                                  seen ? target_direction_pdf(origin, cones, direction) : 0.0, seen, choice);
+    float pdf = mixed_pdf(light, plain, place, square, seen ? target_direction_pdf(origin, cones, direction) : 0.0,
+                          seen, choice);
     float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
     if (!both_sides) radiance *= spread_attenuation(light, tangent);
     return Emission(origin + (front ? point.ray_offset : -point.ray_offset) * normal, triangle, direction,

@@ -42,8 +42,8 @@ float portals_pdf(Light light, vec3 direction, float across, vec3 place, vec2 di
         float part = portal_across(portal, direction);
         if (!(part > 0.0)) continue;
         vec3 offset = iteration.scene_center + place - portal.position;
-        vec2 at = area_light_coordinates(portal, offset - dot(offset, portal.normal) / dot(direction, portal.normal)
-                                                 * direction);
+        vec2 at = area_light_coordinates(
+            portal, offset - dot(offset, portal.normal) / dot(direction, portal.normal) * direction);
         // Rounding must not take a photon for one that misses its own portal.
         if (k == sampled || is_on_area_light(portal, at)) {
             vec2 square = portal.kind == LIGHT_ELLIPSE ? disk_to_square(at) : 0.5 + 0.5 * at;

@@ -31,7 +31,10 @@ buffer UnfinishedVisits {
 const uint CORNERS = 8u;
 
 // A sphere meets the cell at low and, along those axes whose bits are in steps, the next.
-struct Cells { ivec3 low; uint steps; };
+struct Cells {
+    ivec3 low;
+    uint steps;
+};
 
 // A little farther than the radius: rounding must not part a photon from its cell.
 float reach_of(float radius) { return 1.0002 * radius + parameters.rounding; }
@@ -63,7 +66,8 @@ void main() {
     // Corners of caustic cells, then of those of diffused photons, then of those of indirect ones.
     uint corner = parameters.caustics != 0u ? 0u : CORNERS;
     uint corners = (importon.gathers & GATHERS_BY_RAY) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
-                 : wide_in_use[0] != 0u ? 2u * CORNERS : CORNERS;
+                   : wide_in_use[0] != 0u                                            ? 2u * CORNERS
+                                                                                     : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
     float radius = importon.radius;
     float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, iteration.wide_radius);

@@ -18,6 +18,6 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     uint triangle = rays[index].source_triangle;
-    photon_links[index] = triangle == NO_TRIANGLE ? lights[light_of(index)].link
-                          : emitter_traits(triangle) >> EMITTER_LINK_SHIFT;
+    photon_links[index] =
+        triangle == NO_TRIANGLE ? lights[light_of(index)].link : emitter_traits(triangle) >> EMITTER_LINK_SHIFT;
 }

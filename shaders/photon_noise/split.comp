@@ -29,8 +29,7 @@ void main() {
     if (pixel.y >= parameters.first_row && (pixel.y - parameters.first_row) % parameters.step == 0u
         && pixel.x % parameters.step == 0u)
         noise_samples[(pixel.y - parameters.first_row) / parameters.step * parameters.columns
-                      + pixel.x / parameters.step] =
-            vec4(rest, all, read_signed(signed_place(index, false)), 0.0);
+                      + pixel.x / parameters.step] = vec4(rest, all, read_signed(signed_place(index, false)), 0.0);
     radiances[index].rgb = vec3(0.0);
     if (parameters.gathers != 0u) found_radiances[index].rgb = vec3(read_signed(signed_place(index, true)));
 }

@@ -35,7 +35,13 @@ uint packed_footprint(PhotonDifferential at) {
 }
 
 // By how much the shading normal changes with the place on a triangle whose normals are interpolated.
-struct NormalChange { vec3 gradient1; vec3 gradient2; vec3 change1; vec3 change2; vec3 normal; };
+struct NormalChange {
+    vec3 gradient1;
+    vec3 gradient2;
+    vec3 change1;
+    vec3 change2;
+    vec3 normal;
+};
 
 NormalChange normal_change(uint triangle, vec3 position, vec3 normal) {
     vec3 v0 = triangle_vertices[3u * triangle].xyz, e1 = triangle_vertices[3u * triangle + 1u].xyz - v0,

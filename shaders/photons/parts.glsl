@@ -48,7 +48,7 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
 #endif
         else if (part <= PART_TRANSMITTING)
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
-                   * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? 1.0 / lobe.ior : 1.0));
+                     * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? 1.0 / lobe.ior : 1.0));
         else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior)
             share += sharp_share(lobe, transmitted, viewer, light);
     }
@@ -58,7 +58,7 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
 // Of the diffuse or translucent part, seen from its own side of the surface: normal faces the viewer's.
 vec3 diffuse_share(Closure closure, uint part, vec3 normal, vec3 viewer, vec3 light) {
     return (part == PART_DIFFUSE ? closure.diffuse : closure.translucent)
-        * diffuse_factor(closure, normal, viewer, light, part == PART_DIFFUSE);
+           * diffuse_factor(closure, normal, viewer, light, part == PART_DIFFUSE);
 }
 
 // As seen from the side of the viewer, for whom the closure is.

@@ -86,8 +86,7 @@ bool may_go_on(inout Closure closure, uint depth) {
 }
 
 // One event by its share of the flux; what is left of the probability is absorption.
-Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool from_light,
-                   inout RandomSequence random) {
+Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool from_light, inout RandomSequence random) {
     float scale = 1.0 / largest(flux);
     float diffuse = largest(flux * closure.diffuse) * scale, translucent = largest(flux * closure.translucent) * scale,
           transparent = largest(flux * closure.transparent) * scale;
@@ -150,7 +149,7 @@ uint scattered_flags(uint path_flags, bool diffuse) {
 uint photon_flags(uint path_flags) {
     const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
     return (path_flags & PHOTON_FLAG_MASK & ~(history | history >> PHOTON_HISTORY_SHIFT))
-         | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
+           | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
 }
 
 // Shading normals make scattering asymmetric: what Veach (1997, eq. 5.19) gives for particles. Diffuse ones have it
@@ -194,14 +193,14 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
         float ratio = 1.0 / scattering.ior;
         vec3 turn = photon_differentials[index].turn_u,
              turned = normal_turn(change, photon_differentials[index].place_u);
-        photon_differentials[index].turn_u =
-            scattering.transmitted ? refracted_turn(turn, turned, arriving, leaving, normal, ratio)
-                                   : mirrored_turn(turn, turned, arriving, normal);
+        photon_differentials[index].turn_u = scattering.transmitted
+                                                 ? refracted_turn(turn, turned, arriving, leaving, normal, ratio)
+                                                 : mirrored_turn(turn, turned, arriving, normal);
         turn = photon_differentials[index].turn_v;
         turned = normal_turn(change, photon_differentials[index].place_v);
-        photon_differentials[index].turn_v =
-            scattering.transmitted ? refracted_turn(turn, turned, arriving, leaving, normal, ratio)
-                                   : mirrored_turn(turn, turned, arriving, normal);
+        photon_differentials[index].turn_v = scattering.transmitted
+                                                 ? refracted_turn(turn, turned, arriving, leaving, normal, ratio)
+                                                 : mirrored_turn(turn, turned, arriving, normal);
     }
 }
 
@@ -210,17 +209,14 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
 void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival, vec3 flux,
            float left) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_PHOTONS,
-                                            parameters.segment, index);
+    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_PHOTONS, parameters.segment, index);
     bool from_light = (path_flags & PHOTON_CASTS_SHADOWS) != 0u;
     Scattering scattering = scatter(index, closure, flux, arrival, from_light, random);
     float side = dot(scattering.direction, geometric);
     bool passes = scattering.transmitted ? side < 0.0 : side > 0.0;
     if (!(largest(scattering.weight) > 0.0 && passes)) return;
     bool straight = scattering.direction == -arrival;
-    if (!straight)
-        scattering.weight *= adjoint_correction(arrival, scattering.direction, geometric,
-                                                scattering.normal);
+    if (!straight) scattering.weight *= adjoint_correction(arrival, scattering.direction, geometric, scattering.normal);
     flux *= scattering.weight;
     path_flags |= scattering.flags;
     if ((path_flags & scattering.unseen) != 0u) flux = vec3(0.0);
@@ -229,7 +225,7 @@ void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neigh
     else if (counts) photon_paths[index].depth += ONE_TRANSPARENT;
     if (!straight)
         path_flags = scattered_flags(path_flags, scattering.diffuse)
-                   & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
+                     & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (closure.flags & CLOSURE_SHADOWLESS) == 0u) path_flags &= ~PHOTON_DIRECT;
     if (neighbors_known) scatter_differential(index, closure, scattering, -arrival);
     if (!straight) photon_differentials[index].before = 0.0;
@@ -260,8 +256,8 @@ void main() {
     vec3 arrival = -ray.direction;
     Closure closure = closures[index];
     if (!closure_hit(closure)) {
-        photons[slot] = Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, INFINITY_DISTANCE, number,
-                               depth, 0u, 0u);
+        photons[slot] =
+            Photon(vec3(0.0), flags | PHOTON_ESCAPED, carried, 0u, arrival, INFINITY_DISTANCE, number, depth, 0u, 0u);
         photon_paths[index].escaped = total(carried);
         return;
     }
@@ -281,8 +277,8 @@ void main() {
     if (stores && (path_flags & PHOTON_NOT_DIFFUSE) == 0u) flags |= PHOTON_STORED;
     // Written before the path goes on: what it needs of registers then is more.
     float away = differential.before + closure.distance;
-    photons[slot] = Photon(closure.position, flags, flux, closure.geometric_normal, arrival, away, number, depth, 0u,
-                           0u);
+    photons[slot] =
+        Photon(closure.position, flags, flux, closure.geometric_normal, arrival, away, number, depth, 0u, 0u);
     photon_differentials[index].before = away;
     if (ends) return;
     float left = ray.maximum_distance - closure.distance;

@@ -34,8 +34,16 @@ const uint SEARCHED = 32u, ENOUGH = 8u;
 const float SEARCH_STEP = 1.5, GOLDEN_ANGLE = 2.39996323;
 
 // A pixel's surface: normal and view depth; instance and material, 0 of the background.
-struct Seen { vec3 normal; float depth; vec2 number; };
-struct Sum { vec4 color; float count; float weight; };
+struct Seen {
+    vec3 normal;
+    float depth;
+    vec2 number;
+};
+struct Sum {
+    vec4 color;
+    float count;
+    float weight;
+};
 
 ivec2 size_of(CameraView view) { return ivec2(view.width, view.height); }
 

@@ -38,7 +38,8 @@ uint path_flags(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA)
         return path_words[parameters.camera_stride * index + parameters.camera_flags];
     return parameters.path_kind == PATH_OF_PHOTON
-           ? path_words[parameters.photon_stride * index + parameters.photon_flags] : 0u;
+               ? path_words[parameters.photon_stride * index + parameters.photon_flags]
+               : 0u;
 }
 
 // That of a path that came to a surface; to none other, where lights are sampled, of which nothing is asked.
@@ -46,13 +47,15 @@ uint path_depth(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA)
         return path_words[parameters.camera_stride * index + parameters.camera_depth];
     return parameters.path_kind == PATH_OF_PHOTON
-           ? path_words[parameters.photon_stride * index + parameters.photon_depth] : parameters.segment;
+               ? path_words[parameters.photon_stride * index + parameters.photon_depth]
+               : parameters.segment;
 }
 
 // How far a path had come straight through surfaces before its ray began.
 float straight_length(uint index) {
     return parameters.path_kind == PATH_OF_CAMERA
-           ? uintBitsToFloat(path_words[parameters.camera_stride * index + parameters.camera_straight_length]) : 0.0;
+               ? uintBitsToFloat(path_words[parameters.camera_stride * index + parameters.camera_straight_length])
+               : 0.0;
 }
 
 // flags: of the path that came there; index: its number, whose closure gets the offset of its rays.
@@ -78,9 +81,10 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     surface.uv = triangle_uv(hit.triangle, b);
     surface.instance = attributes[hit.triangle].instance;
     // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
-    surface.ray = parameters.path_kind == PATH_OF_CAMERA ? camera_ray_kind(flags)
-                : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE
-                : parameters.path_kind == PATH_OF_SHADOW ? RAY_SHADOW : 0u;
+    surface.ray = parameters.path_kind == PATH_OF_CAMERA   ? camera_ray_kind(flags)
+                  : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE
+                  : parameters.path_kind == PATH_OF_SHADOW ? RAY_SHADOW
+                                                           : 0u;
     surface.ray_length = straight_length(index) + hit.distance;
     uint depth = path_depth(index);
     surface.ray_depth = bounces_of(depth) + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
@@ -99,7 +103,8 @@ float wavelength_choice(uint index, uint flags) {
     bool photon = parameters.path_kind == PATH_OF_PHOTON;
     uint gathers = photon ? 0u : flags & (PATH_GATHERED | PATH_GATHERED_AGAIN);
     uint start = pcg4d(uvec4(photon ? parameters.iteration : index, gathers, parameters.seed,
-                             STAGE_WAVELENGTH << 24u | parameters.path_kind)).x;
+                             STAGE_WAVELENGTH << 24u | parameters.path_kind))
+                     .x;
     return unit_float(start + golden * (photon ? index : parameters.iteration));
 }
 #endif
@@ -140,10 +145,10 @@ void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool 
     if (passes) builder.closure.flags |= CLOSURE_ABSENT;
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     // Shadow rays bring light through what is transparent, and photons and paths leave it to them.
-    bool leaves_direct_light = shadowless || passes_shadow_rays
-        || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
-    builder.closure.flags |= (surface.backfacing ? CLOSURE_BACKFACING : 0u)
-                             | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
+    bool leaves_direct_light =
+        shadowless || passes_shadow_rays || (camera && (unseen || (instance.visibility & RAY_SHADOW) == 0u));
+    builder.closure.flags |=
+        (surface.backfacing ? CLOSURE_BACKFACING : 0u) | (leaves_direct_light ? CLOSURE_SHADOWLESS : 0u);
 }
 
 #ifdef ASKS_FOR_SHADOW_RAYS
@@ -165,7 +170,7 @@ void evaluate_nodes(Surface surface, uint material, uint flags, float u_choice, 
 #ifdef ASKS_FOR_SHADOW_RAYS
     // First, since lobes may lie where those of the other closure do.
     bool passes_light = parameters.path_kind == PATH_OF_PHOTON && (flags & PHOTON_DIRECT) != 0u
-                     && materials[material].passes_shadow_rays != 0u;
+                        && materials[material].passes_shadow_rays != 0u;
     vec3 passed = vec3(0.0);
     if (passes_light) passed = passed_by_shadow_rays(surface, first_constant, u_choice);
 #endif
@@ -179,7 +184,8 @@ void evaluate_nodes(Surface surface, uint material, uint flags, float u_choice, 
 bool shines_there(Surface surface, ShadingInstance instance, uint source_triangle) {
     uvec2 light_sets = uvec2(instance.light_sets0, instance.light_sets1);
     if (light_sets == uvec2(~0u) || parameters.path_kind != PATH_OF_CAMERA || (surface.ray & RAY_CAMERA) != 0u
-        || source_triangle == NO_TRIANGLE) return true;
+        || source_triangle == NO_TRIANGLE)
+        return true;
     return has_set(light_sets, light_set_of(triangle_vertices[3u * source_triangle].w));
 }
 
@@ -238,8 +244,8 @@ void main() {
     uint flags = path_flags(index);
     Surface surface = surface_at(ray, hit, flags, index);
     uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
-    RandomSequence random = random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE,
-                                            parameters.segment + variant, index);
+    RandomSequence random =
+        random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment + variant, index);
     ClosureBuilder builder = builder_at(surface, next_random(random));
     builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
     uint material = attributes[hit.triangle].material;
@@ -250,16 +256,16 @@ void main() {
         builder.closure.flags |= CLOSURE_DISPERSES;
     }
 #endif
-    bool unseen = parameters.path_kind == PATH_OF_CAMERA
-        && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
+    bool unseen =
+        parameters.path_kind == PATH_OF_CAMERA && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_nodes(surface, material, flags, next_random(random), builder);
 #ifdef MATERIAL_SUBSURFACE
     hold_subsurface_of(instance, builder);
 #endif
 #ifdef MATERIAL_AOVS
     // As in Cycles: of what is seen up to the first surface that the passes are of.
-    bool seen_first = parameters.path_kind == PATH_OF_CAMERA
-        && (flags & (PATH_STRAIGHT | PATH_SURFACE_FOUND)) == PATH_STRAIGHT;
+    bool seen_first =
+        parameters.path_kind == PATH_OF_CAMERA && (flags & (PATH_STRAIGHT | PATH_SURFACE_FOUND)) == PATH_STRAIGHT;
     if (seen_first && !unseen) evaluate_aovs(surface, materials[material].first_constant, index);
 #endif
 #ifdef NODE_RAYS

@@ -18,9 +18,8 @@ void main() {
     Hit best = Hit(NO_TRIANGLE, 0.0, 0.0, ray.maximum_distance);
     for (uint triangle = 0u; triangle < parameters.triangle_count; ++triangle) {
         if (triangle == ray.source_triangle) continue;
-        intersect_triangle(
-            test, triangle, triangle_vertices[3u * triangle].xyz, triangle_vertices[3u * triangle + 1u].xyz,
-            triangle_vertices[3u * triangle + 2u].xyz, best);
+        intersect_triangle(test, triangle, triangle_vertices[3u * triangle].xyz,
+                           triangle_vertices[3u * triangle + 1u].xyz, triangle_vertices[3u * triangle + 2u].xyz, best);
     }
     hits[index] = best;
 }

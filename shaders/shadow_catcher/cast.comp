@@ -32,10 +32,11 @@ void main() {
     light_triangles[index] = NO_TRIANGLE;
     Closure closure = closures[index];
     if (!(rays[index].maximum_distance > 0.0) || !closure_hit(closure)
-        || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u) return;
+        || (closure.flags & CLOSURE_CATCHES_SHADOWS) == 0u)
+        return;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal), shading = unpack_unit_vector(closure.shading_normal);
-    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SHADOW_CATCHER,
-                                            parameters.segment, parameters.first_pixel + index);
+    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SHADOW_CATCHER, parameters.segment,
+                                            parameters.first_pixel + index);
     uint light_set = light_set_of(triangle_vertices[3u * closure.triangle].w), chosen_link = 0u;
     float total = 0.0;
     Ray chosen = none;
@@ -44,17 +45,17 @@ void main() {
         vec2 u_place = next_random2(random);
         Light light = lights[choose_light((float(k) + u) / float(CANDIDATES))];
         LightSample sampled = sample_whole_light(light, closure.position, u_part, u_place);
-        uint link = sampled.triangle == NO_TRIANGLE ? light.link
-                    : emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT;
+        uint link =
+            sampled.triangle == NO_TRIANGLE ? light.link : emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT;
         bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != closure.triangle
-                           && has_set(light_links[link].light_sets, light_set);
+                              && has_set(light_links[link].light_sets, light_set);
         float given = largest(sampled.weight) * max(dot(shading, sampled.direction), 0.0) / light.selection_probability;
         if (!lights_diffuse || !(given > 0.0) || dot(geometric, sampled.direction) <= 0.0) continue;
         total += given;
         if (u_choice * total < given) {
             vec3 origin = closure.position + closure.ray_offset * geometric;
-            float reach = sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance)
-                                                              : INFINITY_DISTANCE;
+            float reach =
+                sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance) : INFINITY_DISTANCE;
             chosen = Ray(origin, closure.triangle, sampled.direction, reach);
             chosen_link = link;
             light_triangles[index] = sampled.triangle;

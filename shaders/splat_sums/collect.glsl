@@ -6,7 +6,14 @@
 buffer SplatSums;
 buffer PhotonCounts;
 
-struct Collected { uvec2 red; uvec2 green; uvec2 blue; uint diffused; uint caustic; uvec2 with_signs; };
+struct Collected {
+    uvec2 red;
+    uvec2 green;
+    uvec2 blue;
+    uint diffused;
+    uint caustic;
+    uvec2 with_signs;
+};
 
 void add_words(inout uvec2 sum, uvec2 added) {
     sum.x += added.x;

@@ -37,7 +37,10 @@ void add_to_group_sum(uint pixel, uint group, bool by_ray, vec3 radiance) {
 
 // What a photon's light adds to which sum: the first two by what scatters it toward the camera path, a diffuse part and
 // a lobe; the third to that of caustics.
-struct LightPart { uint sum; vec3 radiance; };
+struct LightPart {
+    uint sum;
+    vec3 radiance;
+};
 
 LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate estimate) {
     uint history = arrived_history(importon.history), first = first_scatter(history);
@@ -54,8 +57,7 @@ LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate e
     }
     bool indirect = (photon_flags & (PHOTON_SCATTERED_BY_LOBE | PHOTON_INDIRECT)) != 0u, of_diffuse = part == 0u;
     if (by_ray) return LightPart(0u, vec3(0.0));
-    if (first != SCATTER_NONE)
-        return LightPart(scattered_sum(first, true), of_diffuse ? estimate.radiance : vec3(0.0));
+    if (first != SCATTER_NONE) return LightPart(scattered_sum(first, true), of_diffuse ? estimate.radiance : vec3(0.0));
     if (of_diffuse) return LightPart(scattered_sum(SCATTER_DIFFUSE, indirect), diffuse);
     return LightPart(scattered_sum(scatter, indirect), diffuse_lobe ? vec3(0.0) : lobe);
 }

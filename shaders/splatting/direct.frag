@@ -13,6 +13,4 @@ readonly buffer Importons;
 flat in uint photon_number;
 flat in uint face;
 
-void main() {
-    meet(uint(gl_FragCoord.y) * parameters.width + uint(gl_FragCoord.x), photon_number);
-}
+void main() { meet(uint(gl_FragCoord.y) * parameters.width + uint(gl_FragCoord.x), photon_number); }

@@ -24,8 +24,8 @@ void main() {
     if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
     vec3 offset = photons[number].position - camera.position;
     vec3 p = vec3(dot(offset, camera.right), dot(offset, camera.up), dot(offset, camera.forward));
-    float radius = photon_radius(photons[number].flags, parameters.least_radius, parameters.radius,
-                                 iteration.wide_radius);
+    float radius =
+        photon_radius(photons[number].flags, parameters.least_radius, parameters.radius, iteration.wide_radius);
     if (p.z < -radius) return;
     vec2 across = vec2(p.x - radius, p.x + radius), along = vec2(p.y - radius, p.y + radius);
     if (camera.projection != PROJECTION_ORTHOGRAPHIC) {

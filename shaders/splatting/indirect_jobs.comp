@@ -60,8 +60,8 @@ void main() {
                                                        parameters.radius, iteration.wide_radius);
     if (distance < radius * 0.9999) return;
     float cosine = min((distance * distance + 3.0 * radius * radius) / (4.0 * distance * radius), 1.0);
-    float sine = distance >= 2.236 * radius ? radius / distance * 1.00001
-                 : sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-3;
+    float sine =
+        distance >= 2.236 * radius ? radius / distance * 1.00001 : sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-3;
     p /= distance;
     int size = int(parameters.resolution);
     for (int face = 0; face < 6; ++face) {
@@ -70,7 +70,8 @@ void main() {
         vec3 q = to_face(p, face);
         vec2 across, along;
         if (q.z < -sine || !sphere_tangents(q.xz, sine, vec2(-1.0, 1.0), across)
-            || !sphere_tangents(q.yz, sine, vec2(-1.0, 1.0), along)) continue;
+            || !sphere_tangents(q.yz, sine, vec2(-1.0, 1.0), along))
+            continue;
         vec2 low = floor((vec2(across.x, along.x) * 0.5 + 0.5) * float(size) - 1e-2);
         vec2 high = floor((vec2(across.y, along.y) * 0.5 + 0.5) * float(size) + 1e-2) + 1.0;
         vec2 bounds_low = vec2(float(size)) - vec2(heads[bounds], heads[bounds + 1]);

@@ -2,4 +2,9 @@
 // Splat jobs: a photon and the pixels [low, high) of the view that its sphere may reach. The buffer
 // starts with the arguments of the indirect draw, six vertices a job.
 
-struct SplatJob { uint photon; uint low; uint high; uint face; };
+struct SplatJob {
+    uint photon;
+    uint low;
+    uint high;
+    uint face;
+};

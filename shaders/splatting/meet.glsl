@@ -11,8 +11,8 @@ void meet(uint importon, uint photon) {
     if (rejected(photons[photon].path, importon)) return;
     vec3 offset = photons[photon].position - importons[importon].position;
     uint flags = photons[photon].flags;
-    float radius = photon_radius(flags, importons[importon].least_radius, importons[importon].radius,
-                                 iteration.wide_radius);
+    float radius =
+        photon_radius(flags, importons[importon].least_radius, importons[importon].radius, iteration.wide_radius);
     if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
     Estimate estimate;
     uint stands_for;

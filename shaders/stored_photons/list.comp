@@ -23,7 +23,8 @@ void main() {
     bool direct = (flags & PHOTON_DIRECT) != 0u;
     if (direct && parameters.takes_direct == DIRECT_NONE) return;
     if (direct && parameters.takes_direct == DIRECT_OF_WORLD
-        && !(photon_origins[photon_path_of(photons[index].path)].radiance > 0.0)) return;
+        && !(photon_origins[photon_path_of(photons[index].path)].radiance > 0.0))
+        return;
     stored_photons[atomicAdd(stored_count, 1u)] = index;
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(diffused_count, 1u);
     if ((flags & PHOTON_INDIRECT) != 0u) atomicAdd(indirect_count, 1u);

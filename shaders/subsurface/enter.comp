@@ -24,7 +24,7 @@ const float LEAST_SHARE = 0.25;
 float below_probability(uint index, Closure closure, Subsurface part, vec3 viewer) {
     float below = largest(part.weight);
     float others = largest(diffuse_beside(closure, part)) + largest(closure.translucent) + largest(closure.transparent)
-                 + largest(closure.emission);
+                   + largest(closure.emission);
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = stored_lobe(index, k);
         others += largest(lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
@@ -50,14 +50,14 @@ void main() {
     }
     Subsurface part = unpacked_subsurface(closure.lobes[CLOSURE_LOBES - 1]);
     vec3 viewer = -rays[index].direction;
-    uvec4 choices = pcg4d(uvec4(parameters.first_path + index, parameters.segment, iteration.seed,
-                                STAGE_SUBSURFACE << 24u));
-    vec4 u = vec4(scrambled_sobol(iteration.number - 1u, choices),
-                  scrambled_sobol(iteration.number - 1u, pcg4d(choices)));
+    uvec4 choices =
+        pcg4d(uvec4(parameters.first_path + index, parameters.segment, iteration.seed, STAGE_SUBSURFACE << 24u));
+    vec4 u =
+        vec4(scrambled_sobol(iteration.number - 1u, choices), scrambled_sobol(iteration.number - 1u, pcg4d(choices)));
     float probability = below_probability(index, closure, part, viewer);
     if (u.w < probability) {
-        vec3 direction = entered(part, unpack_unit_vector(part.normal), unpack_unit_vector(closure.geometric_normal),
-                                 viewer, u.xyz);
+        vec3 direction =
+            entered(part, unpack_unit_vector(part.normal), unpack_unit_vector(closure.geometric_normal), viewer, u.xyz);
         begin_walk(index, closure, part, direction, part.weight / probability);
         closure.diffuse = closure.translucent = closure.transparent = closure.emission = vec3(0.0);
         closure.flags &= ~(3u << LOBE_COUNT_SHIFT);

@@ -22,8 +22,8 @@ void main() {
     Closure closure = closures[index];
     if (!(largest(flux) > 0.0) || !has_subsurface(closure) || adjoint_queries[index].part != PART_DIFFUSE) return;
     Subsurface part = unpacked_subsurface(closure.lobes[CLOSURE_LOBES - 1]);
-    RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS,
-                                            parameters.segment, index);
+    RandomSequence random =
+        random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS, parameters.segment, index);
     vec3 beside = diffuse_beside(closure, part);
     float below = largest(part.weight), probability = below / (below + largest(beside));
     vec3 share = 1.0 / max(closure.diffuse, vec3(1e-20));

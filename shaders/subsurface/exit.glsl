@@ -10,7 +10,12 @@ readonly buffer ExitHits;
 readonly buffer SubsurfaceWalks;
 readonly buffer WalkRays;
 
-struct Exit { vec3 position; vec3 geometric; vec3 shading; float ray_offset; };
+struct Exit {
+    vec3 position;
+    vec3 geometric;
+    vec3 shading;
+    float ray_offset;
+};
 
 // Normals are on the outside, which is where the walk leads.
 Exit exit_of(uint index) {

@@ -29,8 +29,8 @@ void main() {
     if (hit.triangle == NO_TRIANGLE) flux = vec3(0.0);
     else {
         found = exit_of(index);
-        RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS,
-                                                parameters.segment, index);
+        RandomSequence random =
+            random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS, parameters.segment, index);
         random.key.w += 0xf00u;
         Subsurface part = unpacked_subsurface(closures[index].lobes[CLOSURE_LOBES - 1]);
         vec3 u = vec3(next_random2(random), next_random(random));

@@ -14,8 +14,9 @@ vec3 entered(Subsurface part, vec3 normal, vec3 geometric, vec3 viewer, vec3 u) 
     vec3 h = from_frame(frame, sample_visible_normal(to_frame(frame, viewer), frame.alpha, disk));
     float eta = 1.0 / part.ior, cosine = dot(h, viewer);
     bool even = is_even(part, u.z);
-    vec3 direction = even ? cosine_hemisphere(-normal, disk)
-                   : (eta * cosine - sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0))) * h - eta * viewer;
+    vec3 direction =
+        even ? cosine_hemisphere(-normal, disk)
+             : (eta * cosine - sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0))) * h - eta * viewer;
     direction = normalize(direction);
     bool inside = (even || dot(normal, viewer) > 0.0) && dot(direction, geometric) < 0.0;
     return inside ? direction : vec3(0.0);
@@ -37,7 +38,7 @@ vec3 left_by(Subsurface part, vec3 normal, vec3 geometric, vec3 arriving, vec3 u
     float above = dot(direction, normal), outside = dot(direction, geometric);
     bool leaves = k > 0.0 && cosine > 0.0 && above > 0.0 && outside > 0.0;
     weight *= min(outside / max(above, 1e-6), 4.0) * part.ior * part.ior * (1.0 + ggx_lambda(local, frame.alpha))
-            / (1.0 + ggx_lambda(to_frame(frame, direction), frame.alpha));
+              / (1.0 + ggx_lambda(to_frame(frame, direction), frame.alpha));
     if (!leaves) weight = 0.0;
     return leaves ? direction : geometric;
 }

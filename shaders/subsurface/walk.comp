@@ -31,13 +31,17 @@ const uint EVEN_STEPS = 10u;
 // Less than this comes out of no walk that goes on.
 const float LEAST_THROUGHPUT = 1e-6;
 
-struct Medium { vec3 extinction; vec3 scattering; float anisotropy; float guided; };
+struct Medium {
+    vec3 extinction;
+    vec3 scattering;
+    float anisotropy;
+    float guided;
+};
 
 Medium medium_of(SubsurfaceWalk walk, uint step) {
     vec3 scattering = walk.extinction * walk.albedo;
     float g = walk.anisotropy;
-    if (step < EVEN_STEPS)
-        return Medium(walk.extinction, scattering, g, 1.0 - max(0.5, pow(abs(g), 0.125)));
+    if (step < EVEN_STEPS) return Medium(walk.extinction, scattering, g, 1.0 - max(0.5, pow(abs(g), 0.125)));
     return Medium(walk.extinction - scattering * g, scattering * (1.0 - g), 0.0, 0.75);
 }
 
@@ -60,7 +64,10 @@ vec3 around(vec3 axis, float cosine, float u) {
 }
 
 // Lengths are in mean free paths. v: how far light gets (d'Eon and Krivanek, eq. 67).
-struct Guide { float v; float logarithm; };
+struct Guide {
+    float v;
+    float logarithm;
+};
 
 Guide guide_of(SubsurfaceWalk walk) {
     float albedo = largest(walk.albedo);
@@ -69,7 +76,13 @@ Guide guide_of(SubsurfaceWalk walk) {
 }
 
 // How a step was chosen beside plain sampling: over that, of directions to the surface and away from it.
-struct Guided { float to_surface; float away; float stretch; float stretch_away; float away_probability; };
+struct Guided {
+    float to_surface;
+    float away;
+    float stretch;
+    float stretch_away;
+    float away_probability;
+};
 
 // A new direction; returns by what factor its extinction is stretched.
 float turn(SubsurfaceWalk walk, Medium medium, Guide guide, inout Ray ray, inout RandomSequence random,
@@ -78,8 +91,7 @@ float turn(SubsurfaceWalk walk, Medium medium, Guide guide, inout Ray ray, inout
     float per_meter = min(extinction.x, min(extinction.y, extinction.z)) / guide.v;
     bool is_guided = next_random(random) < medium.guided;
     float depth = clamp(dot(walk.entry - ray.origin, normal), 0.0, max(walk.opposite, 0.0));
-    guided.away_probability = walk.opposite < 0.0 ? 0.0
-                            : 1.0 / (1.0 + exp((walk.opposite - 2.0 * depth) * per_meter));
+    guided.away_probability = walk.opposite < 0.0 ? 0.0 : 1.0 / (1.0 + exp((walk.opposite - 2.0 * depth) * per_meter));
     bool away = next_random(random) < guided.away_probability;
     vec2 u = next_random2(random);
     float cosine = guide.v - (guide.v + 1.0) * exp(-u.x * guide.logarithm);
@@ -107,8 +119,9 @@ bool step_on(uint step, inout SubsurfaceWalk walk, inout Ray ray, inout RandomSe
     vec3 weights = abs(walk.throughput * walk.albedo);
     vec3 channels = weights / (weights.x + weights.y + weights.z);
     float u = next_random(random);
-    float extinction = u < channels.x ? medium.extinction.x
-                     : u < channels.x + channels.y ? medium.extinction.y : medium.extinction.z;
+    float extinction = u < channels.x                ? medium.extinction.x
+                       : u < channels.x + channels.y ? medium.extinction.y
+                                                     : medium.extinction.z;
     float u_distance = next_random(random);
     Guided guided = Guided(0.0, 0.0, 1.0, 1.0, 0.0);
     if (step > 0u) extinction *= turn(walk, medium, guide_of(walk), ray, random, guided);

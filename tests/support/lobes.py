@@ -43,9 +43,7 @@ class Lobe:
         self.roughness, self.ior, self.multiscatter, self.inputs = roughness, ior, multiscatter, inputs
 
 
-def material(
-    name: str, *lobes: Lobe, absorption: np.ndarray | None = None, glow: np.ndarray | None = None
-) -> Material:
+def material(name: str, *lobes: Lobe, absorption: np.ndarray | None = None, glow: np.ndarray | None = None) -> Material:
     """A material whose surface is the sum of the lobes, with a medium inside: its absorption, 1/m, and what it emits,
     W/(m^3 sr)."""
     graph = NodeGraph()

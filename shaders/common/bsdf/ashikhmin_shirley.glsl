@@ -24,7 +24,7 @@ float phong_distribution(vec3 h, vec2 alpha) {
     float tilt2 = dot(h.xy, h.xy);
     float exponent = tilt2 > 0.0 ? phong_exponent(exponents, h.xy * inversesqrt(tilt2)) : 0.0;
     return sqrt((exponents.x + 1.0) * (exponents.y + 1.0)) / (2.0 * PI)
-         * exp(0.5 * exponent * log_of_rest(min(tilt2, 1.0)));
+           * exp(0.5 * exponent * log_of_rest(min(tilt2, 1.0)));
 }
 
 // By that density. d: of the unit disk.

@@ -7,11 +7,11 @@
 
 const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
            CLOSURE_KEEPS_LIGHT = 8u,  // photons light it, but it sends none on
-           CLOSURE_CROWDED = 16u,     // one part, chosen by chance, stands for others
-           CLOSURE_ABSENT = 32u,      // the path comes straight through as if it were not there
-           CLOSURE_DISPERSES = 64u,   // the indices of its refracting lobes are those of the path's wavelength
-           CLOSURE_SUBSURFACE = 128u;  // of its diffuse part, some goes below the surface
-const uint LOBE_COUNT_SHIFT = 8u;  // where in the flags the number of lobes stands
+    CLOSURE_CROWDED = 16u,            // one part, chosen by chance, stands for others
+    CLOSURE_ABSENT = 32u,             // the path comes straight through as if it were not there
+    CLOSURE_DISPERSES = 64u,          // the indices of its refracting lobes are those of the path's wavelength
+    CLOSURE_SUBSURFACE = 128u;        // of its diffuse part, some goes below the surface
+const uint LOBE_COUNT_SHIFT = 8u;     // where in the flags the number of lobes stands
 
 const ClosureLobe EMPTY_LOBE = ClosureLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC);
 
@@ -102,7 +102,12 @@ float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 // How a camera path may go on: shares of the transparent part and of the three lobes, where they are specular; and of
 // the diffuse and translucent parts together and of the lobes that store photons, by which a path that gathers goes on
 // once. total: of those by which it may go on; survival: the probability that it does.
-struct PathShares { vec4 specular; vec4 stored; float total; float survival; };
+struct PathShares {
+    vec4 specular;
+    vec4 stored;
+    float total;
+    float survival;
+};
 
 // Roulette sets in once the path's throughput has fallen, and not where the camera sees the surface: of what is dark
 // there, half of all paths would end. total: of all shares by which the path may go on.

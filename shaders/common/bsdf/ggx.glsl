@@ -4,7 +4,13 @@
 
 #include "common/sampling.glsl"
 
-struct MicrofacetFrame { vec3 t; vec3 b; vec3 n; vec2 alpha; bool beckmann; };
+struct MicrofacetFrame {
+    vec3 t;
+    vec3 b;
+    vec3 n;
+    vec2 alpha;
+    bool beckmann;
+};
 
 // Direction and ratio of the axes in two 16-bit parts: where the rougher axis meets the diamond |x| + |y| = 1, y >= 0,
 // about the normal's own tangent frame, and sqrt(smaller alpha / greater alpha).

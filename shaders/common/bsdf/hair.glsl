@@ -43,8 +43,8 @@ HairValue plain_hair_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     vec3 across_o = wo - sine_o * tangent, across_i = wi - sine_i * tangent;
     float cosine = dot(across_o, across_i) * inversesqrt(max(dot(across_o, across_o) * dot(across_i, across_i), 1e-20));
     bool reflects = lobe.kind == LOBE_HAIR_REFLECTION, above = dot(n, wi) >= 0.0;
-    float pdf = half_angle_pdf(lobe.f0, theta_o, theta_i)
-              * azimuth_pdf(lobe.kind, lobe.f0.y, acos(clamp(cosine, -1.0, 1.0)));
+    float pdf =
+        half_angle_pdf(lobe.f0, theta_o, theta_i) * azimuth_pdf(lobe.kind, lobe.f0.y, acos(clamp(cosine, -1.0, 1.0)));
     if (abs(theta_i) > 0.5 * PI - ALONG_FIBER) pdf = 0.0;
     return HairValue(vec3(above != reflects || (reflects && cosine < 0.0) ? 0.0 : pdf), pdf);
 }
@@ -59,8 +59,7 @@ vec3 sample_plain_hair(MicrofacetLobe lobe, vec3 wo, vec2 u, out bool scattered)
     if (lobe.kind == LOBE_HAIR_REFLECTION) phi = 2.0 * asin(1.0 - 2.0 * u.y) * shape.y;
     else phi = PI + shape.y * tan(2.0 * atan(0.5 * PI / shape.y) * (u.y - 0.5));
     scattered = abs(theta_i) < 0.5 * PI - ALONG_FIBER;
-    return normalize(sin(theta_i) * frame.tangent
-                     + cos(theta_i) * (cos(phi) * frame.across + sin(phi) * frame.side));
+    return normalize(sin(theta_i) * frame.tangent + cos(theta_i) * (cos(phi) * frame.across + sin(phi) * frame.side));
 }
 
 // Elsewhere than on strands, Cycles takes the direction beside the viewer's for a bumped normal: lights that are on one
@@ -83,8 +82,9 @@ HairValue hair_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 
 // Of light that paths bring, BSDF times cosine: as it is sampled.
 vec3 hair_carried(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
-    return lobe.weight * (lobe.kind == LOBE_HAIR_CHIANG ? chiang_value(lobe, n, wo, wi).scattered
-                                                        : vec3(plain_hair_value(lobe, n, wo, wi).pdf));
+    return lobe.weight
+           * (lobe.kind == LOBE_HAIR_CHIANG ? chiang_value(lobe, n, wo, wi).scattered
+                                            : vec3(plain_hair_value(lobe, n, wo, wi).pdf));
 }
 
 // Estimate of what is not absorbed, with the lobe's weight; cosine: of the viewer to n.

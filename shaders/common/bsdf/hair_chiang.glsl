@@ -7,10 +7,17 @@
 // tangent's angle about n and the offset, and in the lowest bit whether it is a strand (materials/nodes/hair.glsl).
 
 // BSDF times cosine, without the lobe's weight, and the pdf of sampling, 1/sr.
-struct HairValue { vec3 scattered; float pdf; };
+struct HairValue {
+    vec3 scattered;
+    float pdf;
+};
 
 // across: to the viewer, at a right angle to the tangent.
-struct HairFrame { vec3 tangent; vec3 side; vec3 across; };
+struct HairFrame {
+    vec3 tangent;
+    vec3 side;
+    vec3 across;
+};
 
 HairFrame hair_frame(vec3 tangent, vec3 wo) {
     vec3 side = cross(tangent, wo), other;
@@ -107,9 +114,7 @@ float bessel_i0(float x) {
     return sum;
 }
 
-float log_bessel_i0(float x) {
-    return x > 12.0 ? x + 0.5 * (1.0 / (8.0 * x) - log(2.0 * PI * x)) : log(bessel_i0(x));
-}
+float log_bessel_i0(float x) { return x > 12.0 ? x + 0.5 * (1.0 / (8.0 * x) - log(2.0 * PI * x)) : log(bessel_i0(x)); }
 
 // Sines and cosines of the angles of light and viewer.
 float longitudinal_pdf(vec2 i, vec2 o, float variance) {

@@ -17,7 +17,7 @@ struct Huang {
     float roughness;
     float tilt;
     float h;
-    float coverage;  // half the width that a mean is over; 1: all
+    float coverage;    // half the width that a mean is over; 1: all
     vec3 entering[2];  // of huang_scale
     vec3 leaving[2];
 };
@@ -135,7 +135,12 @@ vec2 seen_width(Huang hair) {
 // a random start.
 const int MOST_FIBER_STEPS = 48;
 
-struct FiberSteps { int count; float start; float size; bool simpson; };
+struct FiberSteps {
+    int count;
+    float start;
+    float size;
+    bool simpson;
+};
 
 FiberSteps fiber_steps(vec2 range, float most, inout uint state) {
     float extent = range.y - range.x;
@@ -167,7 +172,7 @@ float reflected_by_scales(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, vec2 
         if (!facet_seen(v, plain, h) || !facet_seen(l, plain, h)) continue;
         float cosine = dot(m, v);
         sum += weight * facet_density(hair.roughness, dot(m, h)) * both_masking(hair.roughness, cosine, dot(m, l))
-             * arc_length(hair.aspect, gamma) * huang_scale(hair.entering, cosine);
+               * arc_length(hair.aspect, gamma) * huang_scale(hair.entering, cosine);
     }
     return 0.25 * fresnel_dielectric(dot(v, h), lobe.ior) * sum;
 }
@@ -202,7 +207,7 @@ Within behind_facet(Huang hair, vec3 direction, float gamma) {
 Within behind_reflection(Huang hair, vec3 h, float gamma, Within before) {
     vec3 direction = reflect(before.direction, h);
     float turn = ellipse_azimuth(atan(before.direction.x, before.direction.z), hair.aspect)
-               - ellipse_azimuth(atan(-direction.x, -direction.z), hair.aspect);
+                 - ellipse_azimuth(atan(-direction.x, -direction.z), hair.aspect);
     return within_fiber(hair, direction, gamma - 2.0 * turn + PI);
 }
 
@@ -217,8 +222,8 @@ float leave_fiber(MicrofacetLobe lobe, Huang hair, Within path, vec3 l) {
     h /= size;
     float facet = dot(path.normal, h), cosine_i = dot(-path.direction, h), cosine_o = dot(-l, h);
     float value = (1.0 - fresnel_dielectric(cosine_i, 1.0 / lobe.ior)) * facet_density(hair.roughness, facet)
-                * both_masking(hair.roughness, path.cosine, dot(-l, path.normal)) * cosine_i * cosine_o / (size * size)
-                * huang_scale(hair.leaving, path.cosine) * arc_length(hair.aspect, path.gamma);
+                  * both_masking(hair.roughness, path.cosine, dot(-l, path.normal)) * cosine_i * cosine_o
+                  / (size * size) * huang_scale(hair.leaving, path.cosine) * arc_length(hair.aspect, path.gamma);
     return facet >= 0.0 && cosine_i > 0.0 && cosine_o > 0.0 ? value : 0.0;
 }
 
@@ -231,10 +236,11 @@ void add_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, float gamma, fl
     Within path = behind_facet(hair, refract(-v, h, 1.0 / lobe.ior), gamma);
     float leaves = dot(-path.direction, m);
     if (!(cosine_h > 0.0) || !facet_seen(v, m, h) || !facet_seen(-path.direction, m, h) || !facet_seen(v, plain, h)
-        || !facet_seen(-path.direction, plain, h)) return;
+        || !facet_seen(-path.direction, plain, h))
+        return;
     float passed = 1.0 - fresnel_dielectric(cosine_h, lobe.ior);
-    float carried = passed * huang_scale(hair.entering, seen) * other_masking(hair.roughness, seen, leaves)
-                  * seen / leaves;
+    float carried =
+        passed * huang_scale(hair.entering, seen) * other_masking(hair.roughness, seen, leaves) * seen / leaves;
     vec3 absorbed = fiber_absorption(lobe, hair, path.direction, gamma, path.gamma + PI);
     if (dot(l, path.direction) >= least)
         sum += weight * lobe.weight.y * carried * absorbed * leave_fiber(lobe, hair, path, l);
@@ -250,15 +256,17 @@ void add_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, float gamma, fl
         return;
     }
     if (!facet_seen(-path.direction, path.normal, h2) || !facet_seen(next.direction, path.normal, h2)
-        || !facet_seen(-path.direction, path.plain, h2) || !facet_seen(next.direction, path.plain, h2)) return;
+        || !facet_seen(-path.direction, path.plain, h2) || !facet_seen(next.direction, path.plain, h2))
+        return;
     rest += residual;
     if (!(next.cosine > 0.0) || dot(-l, next.normal) <= 0.0 || dot(-l, next.plain) <= 0.0
-        || dot(-next.direction, next.plain) <= 0.0) return;
+        || dot(-next.direction, next.plain) <= 0.0)
+        return;
     float leaves_2 = dot(path.normal, next.direction);
-    carried *= reflected * huang_scale(hair.leaving, path.cosine)
-             * other_masking(hair.roughness, path.cosine, leaves_2) * path.cosine / leaves_2;
+    carried *= reflected * huang_scale(hair.leaving, path.cosine) * other_masking(hair.roughness, path.cosine, leaves_2)
+               * path.cosine / leaves_2;
     sum += weight * lobe.weight.z * carried * absorbed * leave_fiber(lobe, hair, next, l)
-         * fiber_absorption(lobe, hair, next.direction, next.gamma, path.gamma);
+           * fiber_absorption(lobe, hair, next.direction, next.gamma, path.gamma);
 }
 
 // The pdf is Cycles', of which nobody but its power heuristic asks: samples have their weights by themselves.
@@ -287,7 +295,10 @@ vec3 huang_scattered(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 float mean_of(vec3 v) { return (v.x + v.y + v.z) / 3.0; }
 
 // Four ways that light may go from v, by chance: where to, and how much of it.
-struct FiberWays { vec3 directions[4]; vec3 carried[4]; };
+struct FiberWays {
+    vec3 directions[4];
+    vec3 carried[4];
+};
 
 vec3 residual_direction(Huang hair, vec3 v, inout uint state) {
     float w = max(fiber_random(state), 1e-5);
@@ -306,16 +317,16 @@ void add_reflected_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 carried,
     vec3 out_direction = refract(next.direction, h, lobe.ior);
     vec3 absorbed_again = fiber_absorption(lobe, hair, next.direction, next.gamma, path.gamma);
     carried *= absorbed_again * huang_scale(hair.leaving, next.cosine)
-             * other_masking(hair.roughness, path.cosine, dot(path.normal, next.direction));
+               * other_masking(hair.roughness, path.cosine, dot(path.normal, next.direction));
     bool seen = facet_seen(-next.direction, next.plain, h) && facet_seen(-out_direction, next.plain, h);
     if (reflected < 1.0 && seen)
         ways.carried[2] = lobe.weight.z * (1.0 - reflected) * carried
-                        * other_masking(hair.roughness, next.cosine, dot(next.normal, -out_direction));
+                          * other_masking(hair.roughness, next.cosine, dot(next.normal, -out_direction));
     ways.directions[2] = out_direction;
     vec3 mean = sqrt(absorbed * absorbed_again);
     float leaving = max(0.5 * (passed + 1.0 - reflected), 1e-5);
     ways.carried[3] = largest(lobe.weight) * carried * reflected * mean * leaving / (1.0 - mean * (1.0 - leaving))
-                    * other_masking(hair.roughness, next.cosine, dot(next.normal, reflect(next.direction, h)));
+                      * other_masking(hair.roughness, next.cosine, dot(next.normal, reflect(next.direction, h)));
     ways.directions[3] = residual_direction(hair, v, state);
 }
 
@@ -329,8 +340,8 @@ FiberWays fiber_ways(MicrofacetLobe lobe, Huang hair, vec3 v, float gamma, inout
     float reflected = fresnel_dielectric(dot(v, h), lobe.ior), scale = huang_scale(hair.entering, seen);
     ways.directions[0] = reflect(-v, h);
     if (facet_seen(ways.directions[0], plain, h))
-        ways.carried[0] = vec3(lobe.weight.x * reflected * scale
-                               * other_masking(hair.roughness, seen, dot(m, ways.directions[0])));
+        ways.carried[0] =
+            vec3(lobe.weight.x * reflected * scale * other_masking(hair.roughness, seen, dot(m, ways.directions[0])));
     Within path = behind_facet(hair, refract(-v, h, 1.0 / lobe.ior), gamma);
     vec3 h2 = sample_scale_facet(hair.roughness, -path.direction, path.normal, state);
     if (!(path.cosine > 0.0) || !facet_seen(-path.direction, plain, h) || !facet_seen(-path.direction, path.plain, h2))
@@ -338,12 +349,12 @@ FiberWays fiber_ways(MicrofacetLobe lobe, Huang hair, vec3 v, float gamma, inout
     vec3 absorbed = fiber_absorption(lobe, hair, path.direction, gamma, path.gamma + PI);
     float reflected_2 = fresnel_dielectric(dot(-path.direction, h2), 1.0 / lobe.ior), passed = 1.0 - reflected_2;
     vec3 carried = (1.0 - reflected) * scale * other_masking(hair.roughness, seen, dot(m, -path.direction)) * absorbed
-                 * huang_scale(hair.leaving, path.cosine);
+                   * huang_scale(hair.leaving, path.cosine);
     vec3 out_direction = refract(path.direction, h2, lobe.ior);
     ways.directions[1] = out_direction;
     if (passed > 0.0 && dot(path.normal, -out_direction) > 0.0 && facet_seen(-out_direction, path.plain, h2))
         ways.carried[1] = lobe.weight.y * passed * carried
-                        * other_masking(hair.roughness, path.cosine, dot(path.normal, -out_direction));
+                          * other_masking(hair.roughness, path.cosine, dot(path.normal, -out_direction));
     Within next = behind_reflection(hair, h2, gamma, path);
     if (next.cosine > 0.0)
         add_reflected_within(lobe, hair, v, carried * reflected_2, absorbed, passed, path, next, state, ways);
@@ -375,5 +386,6 @@ vec3 huang_albedo(MicrofacetLobe lobe, float cosine) {
     float reflected = fresnel_dielectric(cosine, lobe.ior);
     vec3 part = (1.0 - reflected) * (1.0 - reflected) * passed;
     return lobe.weight.x * reflected + lobe.weight.y * part + lobe.weight.z * part * passed * reflected
-         + largest(lobe.weight) * part * passed * passed * reflected * reflected / max(1.0 - passed * reflected, 1e-6);
+           + largest(lobe.weight) * part * passed * passed * reflected * reflected
+                 / max(1.0 - passed * reflected, 1e-6);
 }

@@ -54,8 +54,9 @@ vec3 unpack_tint(uint bits) {
 
 // What a normal map takes from light to or from wi; smooth_normal: packed, without the map.
 float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
-    return lobe_is_diffuse(lobe.kind) ? bump_shadowing(unpack_unit_vector(smooth_normal),
-                                                       unpack_unit_vector(lobe.normal), wi) : 1.0;
+    return lobe_is_diffuse(lobe.kind)
+               ? bump_shadowing(unpack_unit_vector(smooth_normal), unpack_unit_vector(lobe.normal), wi)
+               : 1.0;
 }
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
@@ -104,7 +105,11 @@ void face_sheet(inout MicrofacetLobe lobe, vec3 n, inout vec3 wi) {
 }
 
 // What sampling a lobe gives: a direction and f cos / pdf. weight is zero when nothing is scattered.
-struct LobeSample { vec3 direction; vec3 weight; bool transmitted; };
+struct LobeSample {
+    vec3 direction;
+    vec3 weight;
+    bool transmitted;
+};
 
 // Of microfacets. Values are chosen in place of left early: what a branch leaves behind is kept beside what others
 // compute, and processors have few registers.
@@ -123,8 +128,8 @@ LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, f
     bool scattered = !(cosine <= 0.0) && (reflected || !(k <= 0.0));
     LobeSample result;
     result.direction = normalize(reflected ? 2.0 * cosine * h - wo : (cosine / lobe.ior - sqrt(k)) * h - wo / lobe.ior);
-    result.weight = reflected ? lobe.weight * shares.reflectance / probability
-                              : shares.transmittance / (1.0 - probability);
+    result.weight =
+        reflected ? lobe.weight * shares.reflectance / probability : shares.transmittance / (1.0 - probability);
     // Both over the squared index of where they are (basic radiance): a refracted beam keeps that of its radiance, and
     // flux, which stays what it is, is over another index (Veach 1997, section 5.2).
     if (!radiance && !reflected) result.weight /= lobe.ior * lobe.ior;
@@ -132,7 +137,7 @@ LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, f
     if (!scattered || (reflected ? side <= 0.0 : side >= 0.0)) result.weight = vec3(0.0);
     if (!smooth_lobe) {
         float lambda_o = facet_lambda(frame, local_wo),
-            lambda_i = facet_lambda(frame, to_frame(frame, result.direction));
+              lambda_i = facet_lambda(frame, to_frame(frame, result.direction));
         float ratio = frame.beckmann ? beckmann_ratio(local_h, frame.alpha) : 1.0;
         float factor = ratio * (1.0 + ggx_lambda(local_wo, frame.alpha)) / (1.0 + lambda_o + lambda_i);
         if (scattered) result.weight *= factor;
@@ -181,15 +186,16 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_
     if (lobe_is_ashikhmin(lobe)) result = sample_ashikhmin(lobe, n, wo, disk);
     else
 #endif
-    if (lobe_has_facets(lobe.kind)) result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
+        if (lobe_has_facets(lobe.kind))
+        result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
     else if (lobe_is_toon(lobe.kind)) result = sample_toon_lobe(lobe, n, wo, disk, radiance);
     else {
         SheenFrame sheen = sheen_frame(n, wo);
         bool fitted = lobe.kind == LOBE_SHEEN;
         result.direction = fitted ? sample_sheen(lobe.f0.xy, sheen, disk) : cosine_hemisphere(n, disk);
         float cosine_i = dot(n, result.direction);
-        result.weight = lobe.weight * (fitted ? 1.0
-                                       : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
+        result.weight =
+            lobe.weight * (fitted ? 1.0 : velvet_scattered(lobe.f0.x, n, wo, result.direction) * PI / cosine_i);
         if (cosine_i <= 0.0) result.weight = vec3(0.0);
         result.transmitted = false;
     }
@@ -209,7 +215,7 @@ bool linking_normal(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi, out vec3 h, o
     oh = dot(wo, h);
     ih = dot(wi, h);
     return cosine_o > 0.0 && cosine_i != 0.0 && lobe.kind != LOBE_NONE && !(transmitted && !lobe_transmits(lobe.kind))
-        && length_h >= 1e-8 && dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
+           && length_h >= 1e-8 && dot(h, n) > 0.0 && oh > 0.0 && (transmitted ? ih < 0.0 : ih > 0.0);
 }
 
 // What a lobe gives of a pair of directions, unit vectors away from the surface.
@@ -228,8 +234,8 @@ LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     vec3 local_h = to_frame(frame, h), local_wo = to_frame(frame, wo), local_wi = to_frame(frame, wi);
     float distribution = facet_distribution(frame, local_h);
     float masking = 1.0 / (1.0 + facet_lambda(frame, local_wo) + facet_lambda(frame, local_wi));
-    float visible = ggx_distribution(local_h, frame.alpha) * oh
-                    / (cosine_o * (1.0 + ggx_lambda(local_wo, frame.alpha)));
+    float visible =
+        ggx_distribution(local_h, frame.alpha) * oh / (cosine_o * (1.0 + ggx_lambda(local_wo, frame.alpha)));
     bool reflected = cosine_i > 0.0;
     float spread = lobe.ior * ih + oh;
     float spread2 = max(spread * spread, 1e-12);
@@ -271,8 +277,8 @@ LobeValue lobe_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float cosine_o = dot(wo, n), cosine_i = dot(wi, n);
     if (lobe_is_toon(lobe.kind)) {
         float intensity = toon_intensity(lobe.f0, dot(lobe.kind == LOBE_TOON ? n : reflect(-wo, n), wi));
-        float pdf = (cosine_o > 0.0 || lobe.kind == LOBE_TOON) && cosine_i > 0.0 && intensity > 0.0
-                    ? toon_pdf(lobe.f0) : 0.0;
+        float pdf =
+            (cosine_o > 0.0 || lobe.kind == LOBE_TOON) && cosine_i > 0.0 && intensity > 0.0 ? toon_pdf(lobe.f0) : 0.0;
         return LobeValue(lobe.weight * (pdf * intensity / max(cosine_i, 1e-20)), pdf);
     }
     bool fitted = lobe.kind == LOBE_SHEEN;

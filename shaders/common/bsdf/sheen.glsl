@@ -4,7 +4,11 @@
 
 #include "common/sampling.glsl"
 
-struct SheenFrame { vec3 t; vec3 b; vec3 n; };
+struct SheenFrame {
+    vec3 t;
+    vec3 b;
+    vec3 n;
+};
 
 SheenFrame sheen_frame(vec3 n, vec3 wo) {
     vec3 t, b;

@@ -9,10 +9,10 @@ MicrofacetLobe stored_lobe(uint path, int k) { return unpacked_lobe(closures[pat
 // is_seen: by the camera.
 PathShares path_shares(uint path, Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool gathers,
                        bool is_seen) {
-    PathShares shares = PathShares(vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0),
-                                   vec4(largest(throughput * closure.diffuse)
-                                        + largest(throughput * closure.translucent), 0.0, 0.0, 0.0), 0.0,
-                                   1.0);
+    PathShares shares = PathShares(
+        vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0),
+        vec4(largest(throughput * closure.diffuse) + largest(throughput * closure.translucent), 0.0, 0.0, 0.0), 0.0,
+        1.0);
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = stored_lobe(path, k);
         float share = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, viewer)));
@@ -27,7 +27,6 @@ PathShares path_shares(uint path, Closure closure, vec3 throughput, vec3 viewer,
 // Whether light from behind the surface is scattered to where it is seen from.
 bool lit_from_behind(uint path, Closure closure) {
     bool transmits = largest(closure.translucent) > 0.0;
-    for (int k = 0; k < closure_lobes(closure); ++k)
-        transmits = transmits || lobe_transmits(stored_lobe(path, k).kind);
+    for (int k = 0; k < closure_lobes(closure); ++k) transmits = transmits || lobe_transmits(stored_lobe(path, k).kind);
     return transmits;
 }

@@ -13,7 +13,7 @@ struct Subsurface {
     float ior;         // with the roughness squared that of the surface where paths go in
     float alpha;
     uint method;
-    uint normal;       // packed
+    uint normal;  // packed
 };
 
 const Subsurface NO_SUBSURFACE = Subsurface(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, 1.4, 1.0, 0u, 0u);
@@ -31,7 +31,7 @@ float unit_of_bits(uint word, uint bits) {
 // The anisotropy has fourteen bits behind those of the lobe's kind, then come twelve of alpha, and the method last.
 ClosureLobe packed_subsurface(Subsurface part) {
     uint kind = LOBE_NONE | unit_bits(0.5 * part.anisotropy + 0.5, 14u) << 4u | unit_bits(part.alpha, 12u) << 18u
-              | part.method << 30u;
+                | part.method << 30u;
     uint albedo = unit_bits(part.albedo.x, 16u) | unit_bits(part.albedo.y, 16u) << 16u;
     return ClosureLobe(part.weight, kind, part.radius, part.albedo.z, part.ior, part.normal, albedo);
 }

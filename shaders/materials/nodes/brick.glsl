@@ -9,12 +9,9 @@ float brick_noise(uint n) {
 }
 
 // Offset, squash and their frequencies are properties of Blender's node; inputs here, so that they can be moved.
-void node_tex_brick(
-    vec3 vector, vec3 color1, vec3 color2, vec3 mortar, float scale, float mortar_size, float mortar_smooth,
-    float bias, float brick_width, float row_height,
-    float offset, float offset_frequency, float squash, float squash_frequency,
-    out vec3 color, out float fac
-) {
+void node_tex_brick(vec3 vector, vec3 color1, vec3 color2, vec3 mortar, float scale, float mortar_size,
+                    float mortar_smooth, float bias, float brick_width, float row_height, float offset,
+                    float offset_frequency, float squash, float squash_frequency, out vec3 color, out float fac) {
     vec2 p = vector.xy * scale;
     int row = int(floor(p.y / row_height));
     float shift = 0.0;

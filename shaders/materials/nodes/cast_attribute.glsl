@@ -3,8 +3,8 @@
 
 #include "materials/nodes/geometry.glsl"
 
-void node_cast_attribute(Surface surface, uint layer, vec3 triangle, vec3 barycentrics, out vec3 color,
-                         out vec3 vector, out float fac, out float alpha) {
+void node_cast_attribute(Surface surface, uint layer, vec3 triangle, vec3 barycentrics, out vec3 color, out vec3 vector,
+                         out float fac, out float alpha) {
     color = vector = vec3(0.0);
     fac = alpha = 0.0;
     if (triangle.z > 0.0) {

@@ -21,5 +21,5 @@ void node_hue_saturation(float hue, float saturation, float value, float factor,
 }
 
 void node_rgb_to_bw(vec3 color, out float luminance) {
-    luminance = dot(color, vec3(0.2126391, 0.7151691, 0.0721928)); // Rec. 709, with Cycles' rounding
+    luminance = dot(color, vec3(0.2126391, 0.7151691, 0.0721928));  // Rec. 709, with Cycles' rounding
 }

@@ -32,9 +32,8 @@ float curve_value(uint table, uint channels, uint channel, int extrapolate, floa
 }
 
 vec3 curve_values(uint table, int extrapolate, vec3 x) {
-    return vec3(
-        curve_value(table, 3u, 0u, extrapolate, x.x), curve_value(table, 3u, 1u, extrapolate, x.y),
-        curve_value(table, 3u, 2u, extrapolate, x.z));
+    return vec3(curve_value(table, 3u, 0u, extrapolate, x.x), curve_value(table, 3u, 1u, extrapolate, x.y),
+                curve_value(table, 3u, 2u, extrapolate, x.z));
 }
 
 void node_rgb_curve(int extrapolate, uint table, float factor, vec3 color, out vec3 result) {

@@ -6,10 +6,8 @@
 #include <NoiseTypes>
 
 // Dimensions, type and normalize are literals; detail is in [0, 15].
-float fractal_noise(
-    int dimensions, int type, int normalize_sum, vec4 p,
-    float detail, float roughness, float lacunarity, float offset, float gain
-) {
+float fractal_noise(int dimensions, int type, int normalize_sum, vec4 p, float detail, float roughness,
+                    float lacunarity, float offset, float gain) {
     int last = type == NOISE_RIDGED_MULTIFRACTAL ? int(detail) : int(ceil(detail));
     float scale = 1.0, amplitude = 1.0, total = 0.0, sum = 0.0, weight = 1.0;
     float value = type == NOISE_MULTIFRACTAL ? 1.0 : 0.0;

@@ -6,7 +6,7 @@
 // side over that of the near one.
 float dielectric_reflectance(float cosine, float eta) {
     float c = abs(cosine), g2 = eta * eta - 1.0 + c * c;
-    if (g2 <= 0.0) return 1.0; // total reflection
+    if (g2 <= 0.0) return 1.0;  // total reflection
     float g = sqrt(g2), a = (g - c) / (g + c), b = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
     return 0.5 * a * a * (1.0 + b * b);
 }

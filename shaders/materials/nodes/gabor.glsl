@@ -28,10 +28,8 @@ vec3 gabor_direction(int dimensions, vec3 base, vec2 angles, float turn, vec3 ce
     return turn == 0.0 ? base : direction;
 }
 
-void node_tex_gabor(
-    int gabor_type, vec3 vector, float scale, float frequency, float anisotropy, float orientation_2d,
-    vec3 orientation_3d, out float value, out float phase, out float intensity
-) {
+void node_tex_gabor(int gabor_type, vec3 vector, float scale, float frequency, float anisotropy, float orientation_2d,
+                    vec3 orientation_3d, out float value, out float phase, out float intensity) {
     int dimensions = gabor_type + 2;
     int cells = dimensions == 2 ? 9 : 27;
     vec3 p = vector * scale;

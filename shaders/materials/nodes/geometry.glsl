@@ -19,8 +19,8 @@ float seen_pixel_width(Surface surface) {
     return pixel_width(surface) * dot(sqrt(1.0 + slope2), vec2(0.5)) / (1.0 + slope2.x + slope2.y);
 }
 
-void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object,
-                    out vec3 camera, out vec3 window, out vec3 reflection) {
+void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 object, out vec3 camera, out vec3 window,
+                    out vec3 reflection) {
     bool world = surface.instance == NO_INSTANCE;
     object = point_to_object(surface, surface.position);
     vec3 n = normal_to_object(surface, surface.normal);
@@ -28,8 +28,9 @@ void node_tex_coord(Surface surface, out vec3 normal, out vec3 uv, out vec3 obje
     uv = vec3(surface.uv, 0.0);
     camera = world ? mat3(parameters.world_to_camera) * surface.position : to_camera(surface.position);
     camera.z = -camera.z;
-    vec2 plane = parameters.orthographic != 0u ? camera.xy
-                 : camera.xy / (camera.z < 0.0 ? min(camera.z, -1e-20) : max(camera.z, 1e-20));
+    vec2 plane = parameters.orthographic != 0u
+                     ? camera.xy
+                     : camera.xy / (camera.z < 0.0 ? min(camera.z, -1e-20) : max(camera.z, 1e-20));
     window = vec3((plane - parameters.window.xz) / (parameters.window.yw - parameters.window.xz), 0.0);
     reflection = world ? surface.viewer : 2.0 * dot(surface.normal, surface.viewer) * surface.normal - surface.viewer;
 }
@@ -50,16 +51,16 @@ void node_attribute(Surface surface, uint layer, out vec3 color, out vec3 vector
 }
 
 void node_generated_coord(Surface surface, uint layer, out vec3 generated) {
-    generated = attribute_place(surface, layer).y > 0u ? attribute_value(surface, layer).xyz
-                : within_texture_space(surface);
+    generated =
+        attribute_place(surface, layer).y > 0u ? attribute_value(surface, layer).xyz : within_texture_space(surface);
 }
 
 void node_random_per_island(Surface surface, uint layer, out float random) {
     random = attribute_value(surface, layer).x;
 }
 
-void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out vec3 tangent,
-                       out vec3 true_normal, out vec3 incoming, out vec3 parametric, out float backfacing) {
+void node_new_geometry(Surface surface, out vec3 position, out vec3 normal, out vec3 tangent, out vec3 true_normal,
+                       out vec3 incoming, out vec3 parametric, out float backfacing) {
     position = world_position(surface);
     normal = surface.normal;
     true_normal = surface.geometric;
@@ -119,9 +120,9 @@ void node_hair_info(Surface surface, out float is_strand_out, out vec3 tangent_n
 void node_point_position(Surface surface, uint layer, out vec3 position) {
     position = vec3(0.0);
     if (attribute_place(surface, layer).y == 0u) return;
-    position = world_position(surface)
-               + direction_to_world(surface, attribute_value(surface, layer).xyz
-                                             - point_to_object(surface, surface.position));
+    position =
+        world_position(surface)
+        + direction_to_world(surface, attribute_value(surface, layer).xyz - point_to_object(surface, surface.position));
 }
 
 // A length across a strand or point: as in Cycles as large as the instance makes it along the diagonal.
@@ -164,8 +165,8 @@ void node_wireframe(Surface surface, int pixel_size, float size, out float fac) 
     vec3 v0, v1, v2;
     triangle_points(surface.triangle, v0, v1, v2);
     float area2 = length(cross(v1 - v0, v2 - v0));
-    vec3 heights = surface.barycentrics * area2
-                   / max(vec3(length(v2 - v1), length(v2 - v0), length(v1 - v0)), vec3(1e-20));
+    vec3 heights =
+        surface.barycentrics * area2 / max(vec3(length(v2 - v1), length(v2 - v0), length(v1 - v0)), vec3(1e-20));
     float width = size;
     if (pixel_size != 0) {
         // What a pixel covers across the viewing ray, the mean of two directions on the surface.

@@ -30,10 +30,10 @@ void node_bsdf_hair(Surface surface, inout ClosureBuilder builder, float weight,
     vec3 along = fiber_tangent(surface, 2, on_strand);
     if (given) along = normalize(tangent);
     vec3 shape = vec3(clamp(vec2(roughness_u, roughness_v), 0.001, 1.0), given || on_strand ? -offset : 0.0);
-    add_lobe(builder, MicrofacetLobe(weight * max(color, 0.0),
-                                     component == 0 ? LOBE_HAIR_REFLECTION : LOBE_HAIR_TRANSMISSION, shape, HAIR_ALPHA,
-                                     vec3(on_strand ? 1.0 : 0.0), 1.0, pack_unit_vector(builder.shading),
-                                     pack_unit_vector(along)));
+    add_lobe(builder,
+             MicrofacetLobe(weight * max(color, 0.0), component == 0 ? LOBE_HAIR_REFLECTION : LOBE_HAIR_TRANSMISSION,
+                            shape, HAIR_ALPHA, vec3(on_strand ? 1.0 : 0.0), 1.0, pack_unit_vector(builder.shading),
+                            pack_unit_vector(along)));
 }
 
 // The tangent's angle about n and the offset, as common/bsdf/hair_chiang.glsl reads them.

@@ -10,21 +10,40 @@ uint hash_words(int words, uvec4 key) {
     uint b = words > 1 ? start + key.y : start;
     uint c = words > 2 ? start + key.z : start;
     if (words > 3) {
-        a -= c; a ^= rotate_left(c, 4); c += b;
-        b -= a; b ^= rotate_left(a, 6); a += c;
-        c -= b; c ^= rotate_left(b, 8); b += a;
-        a -= c; a ^= rotate_left(c, 16); c += b;
-        b -= a; b ^= rotate_left(a, 19); a += c;
-        c -= b; c ^= rotate_left(b, 4); b += a;
+        a -= c;
+        a ^= rotate_left(c, 4);
+        c += b;
+        b -= a;
+        b ^= rotate_left(a, 6);
+        a += c;
+        c -= b;
+        c ^= rotate_left(b, 8);
+        b += a;
+        a -= c;
+        a ^= rotate_left(c, 16);
+        c += b;
+        b -= a;
+        b ^= rotate_left(a, 19);
+        a += c;
+        c -= b;
+        c ^= rotate_left(b, 4);
+        b += a;
         a += key.w;
     }
-    c ^= b; c -= rotate_left(b, 14);
-    a ^= c; a -= rotate_left(c, 11);
-    b ^= a; b -= rotate_left(a, 25);
-    c ^= b; c -= rotate_left(b, 16);
-    a ^= c; a -= rotate_left(c, 4);
-    b ^= a; b -= rotate_left(a, 14);
-    c ^= b; c -= rotate_left(b, 24);
+    c ^= b;
+    c -= rotate_left(b, 14);
+    a ^= c;
+    a -= rotate_left(c, 11);
+    b ^= a;
+    b -= rotate_left(a, 25);
+    c ^= b;
+    c -= rotate_left(b, 16);
+    a ^= c;
+    a -= rotate_left(c, 4);
+    b ^= a;
+    b -= rotate_left(a, 14);
+    c ^= b;
+    c -= rotate_left(b, 24);
     return c;
 }
 

@@ -15,8 +15,9 @@ uint ies_interval(uint first, uint count, float angle) {
 
 // Weights of four neighbors for a place between the middle two (Catmull and Rom).
 vec4 ies_weights(float x) {
-    return 0.5 * vec4(((2.0 - x) * x - 1.0) * x, (3.0 * x - 5.0) * x * x + 2.0, ((4.0 - 3.0 * x) * x + 1.0) * x,
-                      (x - 1.0) * x * x);
+    return 0.5
+           * vec4(((2.0 - x) * x - 1.0) * x, (3.0 * x - 5.0) * x * x + 2.0, ((4.0 - 3.0 * x) * x + 1.0) * x,
+                  (x - 1.0) * x * x);
 }
 
 void node_tex_ies(uint table, vec3 vector, float strength, out float fac) {
@@ -26,7 +27,7 @@ void node_tex_ies(uint table, vec3 vector, float strength, out float fac) {
     uint rows = uint(material_data[table]), columns = uint(material_data[table + 1u]);
     uint h = table + 2u, v = h + rows, values = v + columns;
     bool inside = rows > 1u && columns > 1u && around >= material_data[h] && around < material_data[v - 1u]
-        && down >= material_data[v] && down < material_data[values - 1u];
+                  && down >= material_data[v] && down < material_data[values - 1u];
     if (!inside) return;
     uint row = ies_interval(h, rows, around), column = ies_interval(v, columns, down);
     vec2 low = vec2(material_data[h + row], material_data[v + column]);

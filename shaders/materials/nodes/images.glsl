@@ -41,8 +41,7 @@ vec3 box_weights(vec3 n, float blend) {
 }
 
 void node_tex_image(Surface surface, int projection, int interpolation, int extension, int divide, uint image,
-                    vec3 vector,
-                    float projection_blend, out vec3 color, out float alpha) {
+                    vec3 vector, float projection_blend, out vec3 color, out float alpha) {
     bool box = projection == IMAGE_BOX;
     vec3 n = vec3(0.0), weights = vec3(1.0, 0.0, 0.0);
     if (box) {
@@ -54,9 +53,9 @@ void node_tex_image(Surface surface, int projection, int interpolation, int exte
     for (int axis = 0; axis < (box ? 3 : 1); ++axis) {
         vec2 at = vector.xy;
         if (box)
-            at = axis == 0 ? vec2(n.x < 0.0 ? 1.0 - vector.y : vector.y, vector.z)
-               : axis == 1 ? vec2(n.y > 0.0 ? 1.0 - vector.x : vector.x, vector.z)
-                           : vec2(n.z > 0.0 ? 1.0 - vector.y : vector.y, vector.x);
+            at = axis == 0   ? vec2(n.x < 0.0 ? 1.0 - vector.y : vector.y, vector.z)
+                 : axis == 1 ? vec2(n.y > 0.0 ? 1.0 - vector.x : vector.x, vector.z)
+                             : vec2(n.z > 0.0 ? 1.0 - vector.y : vector.y, vector.x);
         else if (projection == IMAGE_SPHERE) at = sphere_to_uv(vector - 0.5);
         else if (projection == IMAGE_TUBE) at = tube_to_uv(2.0 * vector - 1.0);
         found += weights[axis] * sample_image(image, at, interpolation, extension, divide);
@@ -67,8 +66,7 @@ void node_tex_image(Surface surface, int projection, int interpolation, int exte
 
 // Tiles of 1 x 1 in UV space: the table lists the number of each tile's image, row by row of ten, -1 where none is.
 void node_tex_image_tiles(int interpolation, int extension, int divide, uint table, float tiles, vec3 vector,
-                          out vec3 color,
-                          out float alpha) {
+                          out vec3 color, out float alpha) {
     vec2 corner = floor(vector.xy);
     int tile = int(corner.x) + 10 * int(corner.y);
     color = vec3(1.0, 0.0, 1.0);

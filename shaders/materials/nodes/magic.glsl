@@ -7,9 +7,7 @@ vec3 magic_wrapped(vec3 p) {
     return (p - turns * HIGH) - turns * LOW;
 }
 
-void node_tex_magic(
-    int turbulence_depth, vec3 vector, float scale, float distortion, out vec3 color, out float fac
-) {
+void node_tex_magic(int turbulence_depth, vec3 vector, float scale, float distortion, out vec3 color, out float fac) {
     vec3 p = magic_wrapped(vector);
     float x = sin((p.x + p.y + p.z) * 5.0 * scale);
     float y = cos((-p.x + p.y - p.z) * 5.0 * scale);

@@ -5,10 +5,8 @@
 // Rotation about x, then y, then z (Blender's Euler XYZ), angles in radians.
 mat3 euler_rotation(vec3 angles) {
     vec3 c = cos(angles), s = sin(angles);
-    return mat3(
-        c.y * c.z, c.y * s.z, -s.y,
-        s.x * s.y * c.z - c.x * s.z, s.x * s.y * s.z + c.x * c.z, s.x * c.y,
-        c.x * s.y * c.z + s.x * s.z, c.x * s.y * s.z - s.x * c.z, c.x * c.y);
+    return mat3(c.y * c.z, c.y * s.z, -s.y, s.x * s.y * c.z - c.x * s.z, s.x * s.y * s.z + c.x * c.z, s.x * c.y,
+                c.x * s.y * c.z + s.x * s.z, c.x * s.y * s.z - s.x * c.z, c.x * c.y);
 }
 
 // About a unit axis (Rodrigues).
@@ -27,8 +25,8 @@ void node_mapping(int vector_type, vec3 vector, vec3 location, vec3 rotation, ve
     }
 }
 
-void node_vector_rotate(
-    int rotation_type, int invert, vec3 vector, vec3 center, vec3 axis, float angle, vec3 rotation, out vec3 result) {
+void node_vector_rotate(int rotation_type, int invert, vec3 vector, vec3 center, vec3 axis, float angle, vec3 rotation,
+                        out vec3 result) {
     vec3 from_center = vector - center;
     if (rotation_type == ROTATE_EULER_XYZ) {
         mat3 turn = euler_rotation(rotation);

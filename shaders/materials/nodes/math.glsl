@@ -21,9 +21,9 @@ float smooth_minimum(float a, float b, float distance) {
     }
 MATH(node_math_add, a + b)
 MATH(node_math_subtract, a - b)
-MATH(node_math_multiply, a * b)
+MATH(node_math_multiply, a *b)
 MATH(node_math_divide, safe_divide(a, b))
-MATH(node_math_multiply_add, a * b + c)
+MATH(node_math_multiply_add, a *b + c)
 MATH(node_math_power, safe_power(a, b))
 MATH(node_math_logarithm, safe_logarithm(a, b))
 MATH(node_math_sqrt, sqrt(max(a, 0.0)))

@@ -6,9 +6,7 @@ float blend_overlay(float factor, float a, float b) {
                    : 1.0 - (1.0 - factor + 2.0 * factor * (1.0 - b)) * (1.0 - a);
 }
 
-float blend_divide(float factor, float a, float b) {
-    return b != 0.0 ? (1.0 - factor) * a + factor * a / b : a;
-}
+float blend_divide(float factor, float a, float b) { return b != 0.0 ? (1.0 - factor) * a + factor * a / b : a; }
 
 float blend_dodge(float factor, float a, float b) {
     float rest = 1.0 - factor * b;
@@ -58,7 +56,7 @@ vec3 blend_value(float factor, vec3 a, vec3 b) {
     }
 BLEND(node_mix_color_mix, node_mix_rgb_mix, mix(a, b, factor))
 BLEND(node_mix_color_darken, node_mix_rgb_darken, mix(a, min(a, b), factor))
-BLEND(node_mix_color_multiply, node_mix_rgb_multiply, mix(a, a * b, factor))
+BLEND(node_mix_color_multiply, node_mix_rgb_multiply, mix(a, a *b, factor))
 BLEND(node_mix_color_burn, node_mix_rgb_burn,
       vec3(blend_burn(factor, a.r, b.r), blend_burn(factor, a.g, b.g), blend_burn(factor, a.b, b.b)))
 BLEND(node_mix_color_lighten, node_mix_rgb_lighten, mix(a, max(a, b), factor))

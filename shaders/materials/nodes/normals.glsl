@@ -21,14 +21,17 @@ void node_normal_map(Surface surface, int space, uint layer, float strength, vec
     vec3 n;
     if (space == NORMAL_MAP_TANGENT) {
         uvec2 place = attribute_place(surface, layer);
-        if (place.y < 4u) { normal = surface.normal; return; }
+        if (place.y < 4u) {
+            normal = surface.normal;
+            return;
+        }
         // In object space, tangent and normal interpolated without being made unit.
         vec4 tangent = attribute_value(surface, layer);
         vec3 front = object_normal(surface);
         mapped.xy *= strength;
         mapped.z = mix(1.0, mapped.z, clamp(strength, 0.0, 1.0));
         n = normal_to_world(surface, mapped.x * tangent.xyz + mapped.y * tangent.w * cross(front, tangent.xyz)
-                            + mapped.z * front);
+                                         + mapped.z * front);
     } else {
         // The Blender spaces are those of its former renderer: Y and Z are turned round.
         if (space >= NORMAL_MAP_BLENDER_OBJECT) mapped.yz = -mapped.yz;

@@ -7,7 +7,12 @@
 
 // Half of a side: the angle up to which it is rounded and the rest, and of the coordinate along it at a distance of 1
 // what is bent into a curve, and what is an arc.
-struct RoundedHalf { float bevel; float straight; float curved; float arc; };
+struct RoundedHalf {
+    float bevel;
+    float straight;
+    float curved;
+    float arc;
+};
 
 RoundedHalf rounded_half(float angle, float bevel, float roundness) {
     return RoundedHalf(bevel, angle - bevel, (1.0 - roundness) * bevel, roundness * bevel);
@@ -25,9 +30,8 @@ float largest_parameter(RoundedHalf side, float distance) {
 // distance: to the center; beyond: the angle past the bevel.
 float rounded_parameter(RoundedHalf side, float distance, float beyond) {
     float height = distance * cos(side.straight);
-    float bent = beyond < side.curved
-               ? height * beyond + 0.5 * (1.0 - height) * beyond * beyond / side.curved
-               : 0.5 * side.curved * (height - 1.0) + beyond;
+    float bent = beyond < side.curved ? height * beyond + 0.5 * (1.0 - height) * beyond * beyond / side.curved
+                                      : 0.5 * side.curved * (height - 1.0) + beyond;
     return distance * sin(side.straight) + bent;
 }
 
@@ -45,7 +49,13 @@ float distance_to_circle(vec2 center, float radius, vec2 direction) {
 
 // Where a place is in its segment: distance of the polygon through it, coordinate along the side without sign, its
 // largest value, width of the segment, and the angle of the side's middle in it.
-struct SegmentPlace { float rise; float parameter; float largest; float width; float middle; };
+struct SegmentPlace {
+    float rise;
+    float parameter;
+    float largest;
+    float width;
+    float middle;
+};
 
 SegmentPlace on_side(RoundedHalf side, float angle, float middle, float distance, float width) {
     float rise = distance * cos(middle - angle);
@@ -122,8 +132,8 @@ void node_radial_tiling(int normalized, vec3 vector, float sides, float roundnes
     SegmentPlace place = segment_place(sides, clamp(roundness, 0.0, 1.0), turn, x, angle, length(vector.xy));
     float parameter = centered ? 0.0 : angle < place.middle ? -place.parameter : place.parameter;
     segment_coordinates = vec3(parameter, place.rise - 1.0, 0.0);
-    if (normalized != 0) segment_coordinates = vec3(centered ? 0.5 : 0.5 * parameter / place.largest + 0.5,
-                                                    place.rise, 0.0);
+    if (normalized != 0)
+        segment_coordinates = vec3(centered ? 0.5 : 0.5 * parameter / place.largest + 0.5, place.rise, 0.0);
     segment_id = floor(sides * (turn / (2.0 * PI) + below));
     segment_width = place.width;
     segment_rotation = number * segment + place.middle;

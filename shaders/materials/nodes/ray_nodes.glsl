@@ -26,8 +26,7 @@ void node_ambient_occlusion(Surface surface, int inside, int only_local, uint pl
 }
 
 // The mean normal of what of the object lies within the radius. As in Cycles, blurred reflections see none of it.
-void node_bevel(Surface surface, uint place, uint level, float radius, vec3 normal_in, float samples,
-                out vec3 normal) {
+void node_bevel(Surface surface, uint place, uint level, float radius, vec3 normal_in, float samples, out vec3 normal) {
     normal = normal_in;
 #ifdef NODE_RAYS
     bool blurred = (surface.ray & RAY_DIFFUSE) != 0u;

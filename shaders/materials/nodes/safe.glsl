@@ -3,9 +3,7 @@
 
 float safe_divide(float a, float b) { return b != 0.0 ? a / b : 0.0; }
 
-vec3 safe_divide(vec3 a, vec3 b) {
-    return vec3(safe_divide(a.x, b.x), safe_divide(a.y, b.y), safe_divide(a.z, b.z));
-}
+vec3 safe_divide(vec3 a, vec3 b) { return vec3(safe_divide(a.x, b.x), safe_divide(a.y, b.y), safe_divide(a.z, b.z)); }
 
 // Powers of negative numbers exist for whole exponents only; 0 has no inverse.
 float safe_power(float base, float exponent) {
@@ -22,9 +20,7 @@ vec3 safe_power(vec3 base, vec3 exponent) {
     return vec3(safe_power(base.x, exponent.x), safe_power(base.y, exponent.y), safe_power(base.z, exponent.z));
 }
 
-float safe_logarithm(float a, float base) {
-    return a > 0.0 && base > 0.0 ? safe_divide(log(a), log(base)) : 0.0;
-}
+float safe_logarithm(float a, float base) { return a > 0.0 && base > 0.0 ? safe_divide(log(a), log(base)) : 0.0; }
 
 // The leading half of a float's digits: products of two such are exact.
 float leading_half(float a) { return uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u); }
@@ -35,8 +31,8 @@ float safe_modulo(float a, float b) {
     if (b == 0.0) return 0.0;
     float size = abs(a), divisor = abs(b), quotient = trunc(size / divisor);
     float q = leading_half(quotient), d = leading_half(divisor);
-    precise float remainder = ((size - q * d) - q * (divisor - d)) - (quotient - q) * d
-                              - (quotient - q) * (divisor - d);
+    precise float remainder =
+        ((size - q * d) - q * (divisor - d)) - (quotient - q) * d - (quotient - q) * (divisor - d);
     if (remainder < 0.0) remainder += divisor;
     if (remainder >= divisor) remainder -= divisor;
     return a < 0.0 ? -remainder : remainder;

@@ -55,8 +55,7 @@ void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distributio
     if (film.thickness > THINNEST_FILM)
         lobe = covered_glass_lobe(at, weighted, weighted, glass_film_reflectance(builder, at, film, valid_ior(ior)),
                                   relative);
-    else
-        lobe = glass_lobe(at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), relative, distribution == 2);
+    else lobe = glass_lobe(at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), relative, distribution == 2);
     add_lobe(builder, lobe);
 }
 
@@ -117,32 +116,31 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
     add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2, white_albedos(at)));
 }
 
-void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size,
-                    float smoothness, vec3 normal) {
+void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size, float smoothness,
+                    vec3 normal) {
     add_lobe(builder, toon_lobe(builder, component == 0 ? LOBE_TOON : LOBE_GLOSSY_TOON, weight * max(color, 0.0), size,
                                 smoothness, normal));
 }
 
 void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distribution, int subsurface_method,
-                          int thin_wall,
-                          vec3 base_color, float metallic, float roughness, float ior, float alpha, vec3 normal,
-                          float diffuse_roughness,
-                          float subsurface_weight, vec3 subsurface_radius, float subsurface_scale, float subsurface_ior,
-                          float subsurface_anisotropy, float specular_ior_level, vec3 specular_tint, float anisotropic,
-                          float anisotropic_rotation, vec3 tangent, float transmission_weight, float coat_weight,
-                          float coat_roughness, float coat_ior, vec3 coat_tint, vec3 coat_normal, float sheen_weight,
-                          float sheen_roughness, vec3 sheen_tint, vec3 emission_color, float emission_strength,
-                          float thin_film_thickness, float thin_film_ior) {
-    add_principled(builder, weight, Principled(
-        max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal,
-        unit(diffuse_roughness),
-        unit(subsurface_weight), max(subsurface_radius * subsurface_scale, 0.0), subsurface_ior, subsurface_anisotropy,
-        uint(subsurface_method), max(specular_ior_level, 0.0), max(specular_tint, 0.0),
-        unit(anisotropic), anisotropic_rotation, tangent,
-        unit(transmission_weight), unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0),
-        coat_normal,
-        unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0), emission_color * max(emission_strength, 0.0),
-        Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1, thin_wall == 1));
+                          int thin_wall, vec3 base_color, float metallic, float roughness, float ior, float alpha,
+                          vec3 normal, float diffuse_roughness, float subsurface_weight, vec3 subsurface_radius,
+                          float subsurface_scale, float subsurface_ior, float subsurface_anisotropy,
+                          float specular_ior_level, vec3 specular_tint, float anisotropic, float anisotropic_rotation,
+                          vec3 tangent, float transmission_weight, float coat_weight, float coat_roughness,
+                          float coat_ior, vec3 coat_tint, vec3 coat_normal, float sheen_weight, float sheen_roughness,
+                          vec3 sheen_tint, vec3 emission_color, float emission_strength, float thin_film_thickness,
+                          float thin_film_ior) {
+    add_principled(
+        builder, weight,
+        Principled(max(base_color, 0.0), unit(metallic), unit(roughness), valid_ior(ior), unit(alpha), normal,
+                   unit(diffuse_roughness), unit(subsurface_weight), max(subsurface_radius * subsurface_scale, 0.0),
+                   subsurface_ior, subsurface_anisotropy, uint(subsurface_method), max(specular_ior_level, 0.0),
+                   max(specular_tint, 0.0), unit(anisotropic), anisotropic_rotation, tangent, unit(transmission_weight),
+                   unit(coat_weight), unit(coat_roughness), max(coat_ior, 1.0), max(coat_tint, 0.0), coat_normal,
+                   unit(sheen_weight), unit(sheen_roughness), max(sheen_tint, 0.0),
+                   emission_color * max(emission_strength, 0.0),
+                   Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1, thin_wall == 1));
 }
 
 // What absorbs is not seen: its coefficient takes the place of the emission.

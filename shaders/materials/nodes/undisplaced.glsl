@@ -30,7 +30,7 @@ Surface undisplaced_beside(Surface surface, vec3 way, float stretch, uint layer)
 // faces share at their vertices, where there are any.
 vec3 undisplaced_normal(Surface surface, uint layer) {
     vec3 n = attribute_place(surface, layer).y < 3u ? triangle_normal(surface.triangle, surface.barycentrics)
-             : normal_to_world(surface, attribute_value(surface, layer).xyz);
+                                                    : normal_to_world(surface, attribute_value(surface, layer).xyz);
     float size = length(n);
     return size > 1e-6 ? (surface.backfacing ? -n : n) / size : surface.normal;
 }

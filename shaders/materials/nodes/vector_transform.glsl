@@ -28,8 +28,8 @@ vec3 world_to_camera(int vector_type, vec3 v) {
     return vec3(v.xy, -v.z);
 }
 
-void node_vector_transform(
-    Surface surface, int vector_type, int convert_from, int convert_to, vec3 vector, out vec3 result) {
+void node_vector_transform(Surface surface, int vector_type, int convert_from, int convert_to, vec3 vector,
+                           out vec3 result) {
     result = vector;
     if (convert_from == convert_to) return;
     if (convert_from != SPACE_WORLD)

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "materials/nodes/voronoi_features.glsl"
 
-void node_tex_voronoi(
-    int voronoi_dimensions, int metric, int feature, int normalize_sum,
-    vec3 vector, float w, float scale, float detail, float roughness, float lacunarity, float smoothness,
-    float exponent, float randomness,
-    out float distance_out, out vec3 color, out vec3 position, out float w_out, out float radius
-) {
+void node_tex_voronoi(int voronoi_dimensions, int metric, int feature, int normalize_sum, vec3 vector, float w,
+                      float scale, float detail, float roughness, float lacunarity, float smoothness, float exponent,
+                      float randomness, out float distance_out, out vec3 color, out vec3 position, out float w_out,
+                      out float radius) {
     int dimensions = voronoi_dimensions + 1;
     detail = clamp(detail, 0.0, 15.0);
     roughness = clamp(roughness, 0.0, 1.0);
     randomness = clamp(randomness, 0.0, 1.0);
     smoothness = clamp(0.5 * smoothness, 0.0, 0.5);
-    vec4 p = dimensions == 1 ? vec4(w * scale, 0.0, 0.0, 0.0)
-           : vec4(vector * scale, w * scale) * voronoi_axes(dimensions);
+    vec4 p =
+        dimensions == 1 ? vec4(w * scale, 0.0, 0.0, 0.0) : vec4(vector * scale, w * scale) * voronoi_axes(dimensions);
     bool edge = feature == VORONOI_DISTANCE_TO_EDGE;
     distance_out = edge ? 8.0 : 0.0;
     color = vec3(0.0);
@@ -31,9 +29,8 @@ void node_tex_voronoi(
     int last = roughness == 0.0 || feature == VORONOI_N_SPHERE_RADIUS ? 0 : int(ceil(detail));
     for (int i = 0; i <= last; ++i) {
         float share = float(i) <= detail ? 1.0 : fract(detail);
-        VoronoiOctave octave = voronoi_octave(
-            dimensions, metric, feature, smoothness, exponent, randomness, p * octave_scale
-        );
+        VoronoiOctave octave =
+            voronoi_octave(dimensions, metric, feature, smoothness, exponent, randomness, p * octave_scale);
         if (edge) {
             float reached = min(distance_out, octave.distance / octave_scale);
             total = mix(total, mix(total, furthest / octave_scale, amplitude), share);

@@ -5,12 +5,15 @@
 #include <VoronoiFeatures>
 
 // The distance is that to the edge or the radius where that is the feature, without color and position then.
-struct VoronoiOctave { float distance; vec3 color; vec4 position; };
+struct VoronoiOctave {
+    float distance;
+    vec3 color;
+    vec4 position;
+};
 
 // Blends a cell in with a polynomial smooth minimum; the first one replaces what is there.
-void voronoi_blend(
-    inout VoronoiOctave octave, bool first, float smoothness, float reached, vec3 color, vec4 point, vec4 axes
-) {
+void voronoi_blend(inout VoronoiOctave octave, bool first, float smoothness, float reached, vec3 color, vec4 point,
+                   vec4 axes) {
     float lead = octave.distance - reached;
     float share = smoothness > 0.0 ? smoothstep(0.0, 1.0, 0.5 + 0.5 * lead / smoothness) : lead > 0.0 ? 1.0 : 0.0;
     if (first) share = 1.0;
@@ -23,9 +26,8 @@ void voronoi_blend(
 
 // From a place in a cell to the nearest plane halfway between the nearest point and another one; or half the way
 // from the nearest point to the one nearest to that.
-float voronoi_border(
-    int dimensions, bool to_edge, float randomness, vec4 corner, vec4 place, ivec4 chosen, vec4 center
-) {
+float voronoi_border(int dimensions, bool to_edge, float randomness, vec4 corner, vec4 place, ivec4 chosen,
+                     vec4 center) {
     ivec4 cell = ivec4(corner);
     if (to_edge && dimensions == 1) {
         // Cycles looks at the two borders of the cell's own point, whose key may be -0.0.
@@ -50,9 +52,8 @@ float voronoi_border(
 
 // Dimensions, metric and feature are literals. One pass over the cells serves all features, so that little code
 // is left to compile.
-VoronoiOctave voronoi_octave(
-    int dimensions, int metric, int feature, float smoothness, float exponent, float randomness, vec4 coordinates
-) {
+VoronoiOctave voronoi_octave(int dimensions, int metric, int feature, float smoothness, float exponent,
+                             float randomness, vec4 coordinates) {
     bool to_edge = feature == VORONOI_DISTANCE_TO_EDGE, to_neighbor = feature == VORONOI_N_SPHERE_RADIUS;
     if (to_edge || to_neighbor) metric = VORONOI_EUCLIDEAN;
     bool smoothed = feature == VORONOI_SMOOTH_F1;

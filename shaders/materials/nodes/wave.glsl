@@ -3,11 +3,9 @@
 #include "materials/nodes/fractal_noise.glsl"
 #include <WaveOptions>
 
-void node_tex_wave(
-    int wave_type, int bands_direction, int rings_direction, int wave_profile,
-    vec3 vector, float scale, float distortion, float detail, float detail_scale, float detail_roughness,
-    float phase_offset, out vec3 color, out float fac
-) {
+void node_tex_wave(int wave_type, int bands_direction, int rings_direction, int wave_profile, vec3 vector, float scale,
+                   float distortion, float detail, float detail_scale, float detail_roughness, float phase_offset,
+                   out vec3 color, out float fac) {
     // Cycles' nudge keeps whole coordinates off the borders.
     vec3 p = (vector * scale + 0.000001) * 0.999999;
     float phase;
@@ -21,9 +19,8 @@ void node_tex_wave(
     // No turns without distortion: a loop is skipped where a branch may not be.
     int turns = distortion != 0.0 ? 1 : 0;
     for (int turn = 0; turn < turns; ++turn) {
-        float noise = fractal_noise(
-            3, NOISE_FBM, 1, vec4(p * detail_scale, 0.0), clamp(detail, 0.0, 15.0), detail_roughness, 2.0, 0.0, 1.0
-        );
+        float noise = fractal_noise(3, NOISE_FBM, 1, vec4(p * detail_scale, 0.0), clamp(detail, 0.0, 15.0),
+                                    detail_roughness, 2.0, 0.0, 1.0);
         phase += distortion * (noise * 2.0 - 1.0);
     }
     if (wave_profile == PROFILE_SIN) {

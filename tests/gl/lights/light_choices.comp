@@ -32,15 +32,16 @@ void main() {
     if (index >= parameters.count) return;
     RandomSequence random = random_sequence(iteration.seed, 1u, 1u, 0u, index);
     if (parameters.looks_at_lights != 0u) {
-        vec3 origin = 4.0 * (vec3(next_random(random), next_random2(random)) - 0.5), direction = sample_sphere(next_random2(random));
+        vec3 origin = 4.0 * (vec3(next_random(random), next_random2(random)) - 0.5),
+             direction = sample_sphere(next_random2(random));
         vec3 all = vec3(0.0);
         for (uint light = 0u; light < iteration.light_count; ++light) {
             float distance, pdf;
             all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
         ScatterPoint from = ScatterPoint(LitPoint(origin, vec3(0.0), false, 0u), 0.0, 0.0, false, 0u);
-        PassedLights passed = passed_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0,
-                                            vec3(0.0));
+        PassedLights passed =
+            passed_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0, vec3(0.0));
         results[index] = vec4(passed.radiance.xy, all.xy);
         return;
     }

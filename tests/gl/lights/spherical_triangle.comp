@@ -20,6 +20,7 @@ void main() {
     vec3 v0 = triangles[first + 1u].xyz, v1 = triangles[first + 2u].xyz, v2 = triangles[first + 3u].xyz;
     RandomSequence random = random_sequence(7u, 1u, 1u, 0u, index);
     float solid_angle = triangle_solid_angle(point, v0, v1, v2);
-    vec3 toward = solid_angle > 0.0 ? sample_spherical_triangle(point, v0, v1, v2, solid_angle, next_random2(random)) : vec3(0.0);
+    vec3 toward =
+        solid_angle > 0.0 ? sample_spherical_triangle(point, v0, v1, v2, solid_angle, next_random2(random)) : vec3(0.0);
     results[index] = vec4(toward, solid_angle);
 }

@@ -238,8 +238,9 @@ def test_a_body_that_shines(renderer, share, within):
 def test_a_body_that_shines_lights_surfaces(renderer):
     """A card in a body whose light comes from near it alone gets the same from all sides."""
     absorption, far = np.full(3, 2.0), 0.01
-    scene = scene_of((0, at(-4.0, 20.0), CLEAR), (1, at(-far), WHITE), body=body_of(TRANSPARENT, absorption, SHINING),
-                     iterations=8)
+    scene = scene_of(
+        (0, at(-4.0, 20.0), CLEAR), (1, at(-far), WHITE), body=body_of(TRANSPARENT, absorption, SHINING), iterations=8
+    )
     scene.materials[WHITE] = material("white", Lobe(LobeKind.DIFFUSE))
     expected = SHINING / 2.0 * passed(far * rays(), absorption) + shone(far * rays(), absorption)
     found = picture(renderer, scene).mean(axis=(0, 1))

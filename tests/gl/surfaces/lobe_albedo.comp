@@ -17,12 +17,13 @@ void main() {
     RandomSequence random = random_sequence(7u, 1u, 1u, 0u, index);
     vec3 n = unpack_unit_vector(pack_unit_vector(normalize(vec3(0.3, -0.5, 0.8)))), t, b;
     tangent_frame(n, t, b);
-    uint anisotropy = pack_anisotropy(n, normalize(t + 0.4 * b), parameters.aspect) | (parameters.beckmann != 0u ? BECKMANN : 0u);
-    MicrofacetLobe lobe = MicrofacetLobe(parameters.weight, parameters.kind, parameters.f0, parameters.alpha, parameters.tint,
-                                         parameters.ior, pack_unit_vector(n), anisotropy);
+    uint anisotropy =
+        pack_anisotropy(n, normalize(t + 0.4 * b), parameters.aspect) | (parameters.beckmann != 0u ? BECKMANN : 0u);
+    MicrofacetLobe lobe = MicrofacetLobe(parameters.weight, parameters.kind, parameters.f0, parameters.alpha,
+                                         parameters.tint, parameters.ior, pack_unit_vector(n), anisotropy);
     vec3 wo = normalize(sqrt(1.0 - parameters.cosine * parameters.cosine) * t + parameters.cosine * n);
-    LobeSample sampled = sample_lobe(lobe, n, wo, sample_disk(next_random2(random)), next_random(random),
-                                     parameters.radiance != 0u);
+    LobeSample sampled =
+        sample_lobe(lobe, n, wo, sample_disk(next_random2(random)), next_random(random), parameters.radiance != 0u);
     vec3 wi = sample_sphere(next_random2(random));
     vec3 evaluated = evaluate_lobe(lobe, n, wo, wi) * abs(dot(wi, n)) * 4.0 * PI;
     results[5u * index] = vec4(sampled.weight, sampled.transmitted ? 1.0 : 0.0);
@@ -32,8 +33,7 @@ void main() {
     MicrofacetLobe back = lobe;
     if (through) back.ior = 1.0 / lobe.ior;
     vec3 forward = evaluate_lobe(lobe, n, wo, wi), reverse = evaluate_lobe(back, through ? -n : n, wi, wo);
-    results[5u * index + 2u] = vec4(forward.x, reverse.x, through ? 1.0 : 0.0,
-                                       abs(dot(wi, n)) * 4.0 * PI);
+    results[5u * index + 2u] = vec4(forward.x, reverse.x, through ? 1.0 : 0.0, abs(dot(wi, n)) * 4.0 * PI);
     // The direction's pdf, by the means of functions of it.
     vec3 at = sampled.direction;
     results[5u * index + 3u] = largest(sampled.weight) > 0.0 ? vec4(1.0, at.x, at.y * at.y, at.z * at.x) : vec4(0.0);

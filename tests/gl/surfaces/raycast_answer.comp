@@ -6,7 +6,9 @@ layout(local_size_x = 1) in;
 
 #include <RaycastAnswerParameters>
 uniform Parameters { RaycastAnswerParameters parameters; };
-struct Surface { vec3 position; };
+struct Surface {
+    vec3 position;
+};
 vec3 world_position(Surface surface) { return surface.position + parameters.world_origin; }
 #include "materials/node_rays.glsl"
 #include "materials/nodes/raycast.glsl"
