@@ -39,6 +39,10 @@ class Case:
 
 
 _CAMERA = "camera.data"
+_PASSES = (
+    "Depth,Normal,UV,Mist,Diffuse Direct,Diffuse Indirect,Diffuse Color,Glossy Direct,Glossy Indirect,"
+    "Transmission Direct,Transmission Indirect,Emission,Environment,Caustics,Denoising Albedo,Object Index"
+)
 CASES = {
     "room of glass": Case("first_light"),
     "rasterized splats": Case("first_light", ("rppm.density_estimation=RASTERIZED",)),
@@ -53,6 +57,13 @@ CASES = {
     "orthographic": Case("pool", (f"{_CAMERA}.type=ORTHO",)),
     "blur of motion": Case("spotlight", ("render.use_motion_blur=true",)),
     "frames": Case("spotlight", runs=(("--frames", "1..3", "--samples", "2"),), frames=True),
+    "passes": Case("first_light", runs=(("--samples", "3", "--passes", _PASSES),)),
+    "passes beside a catcher": Case(
+        "pool",
+        ('objects["Deck"].is_shadow_catcher=true', "render.film_transparent=true"),
+        runs=(("--samples", "3", "--passes", _PASSES + ",Shadow Catcher"),),
+    ),
+    "noise threshold": Case("spotlight", runs=(("--samples", "48", "--adaptive-threshold", "0.2"),)),
     "learned": Case("spotlight", runs=(("--samples", "6"),)),
     "resumed": Case(
         "spotlight",

@@ -3,19 +3,18 @@
 
 from collections.abc import Iterator
 
-from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
 from .learning import BandFindings, Learning
+from .stages.events import BandEvents
 from .stages.gbuffer import jittered_view
 from .stages.stage_set import StageSet
 
 
 def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:
     """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
-    importons, camera_hits = stages.importons, stages.camera_hits
-    estimator, film, light, groups = stages.density_estimator, stages.film, stages.light_passes, stages.light_groups
+    importons, estimator, listeners = stages.importons, stages.density_estimator, stages.listeners
     yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
     findings: list[BandFindings] = []
@@ -25,40 +24,32 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         stages.clear(context)
         context = context.with_blocks(stages.blocks_of(band))
         view = jittered_view(context.scene.camera, context.settings, band, iteration)
-        camera_hits.find(context, importons, view, band)  # DirectCameraHits
+        events = stages.events_of(context, iteration, band, radii)
+        stages.camera_hits.find(context, importons, view, band)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons, iteration)
         yield
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
                 break
-            stages.photon_noise.count(importons, iteration)
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
             stages.shadow_catcher.cast(context, importons, band, segment)
             stages.direct_light.add(context, importons, band, iteration, segment)
             yield
-            film.add_passes(context, importons, band, iteration, segment)
-            film.add_caught_shadows(context, importons, band, iteration, segment)
-            light.add_direct_light(context, importons, stages.direct_light, film, band, iteration, segment)
-            groups.add_direct_light(context, importons, stages.direct_light, iteration)
+            listeners.direct_light_found(events, segment)
             importons.scatter(context, band, segment)
-            film.add_seen_light(context, importons, band, iteration, segment)
-            groups.add_seen_light(context, importons, iteration)
+            listeners.paths_scattered(events, segment)
             stages.coverage.probe(context, importons, band, segment)
-            raster = camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
+            raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
             estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
             yield
         if iteration.needs_radiance:
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, radii)
         if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
-            film.accumulate(context, importons.radiances, estimator.sums, band)
-            film.add_aovs(context, importons, band)
-            stages.noise_estimate.add(context, importons.radiances, estimator.sums, band, iteration)
-            light.add_indirect_light(context, importons, stages.final_gather, estimator.sums, film, band, radii)
-            groups.accumulate(context, stages.final_gather, estimator.sums, film, band, radii)
+            listeners.band_ended(events)
         if iteration.precedes_learning:
-            findings.append(_read_findings(context, stages, learning, band, iteration, radii))
+            findings.append(_read_findings(events, stages, learning))
     _learn(context, stages, learning, iteration, findings)
     yield
 
@@ -87,17 +78,14 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     return radii
 
 
-def _read_findings(
-    context: StageContext, stages: StageSet, learning: Learning, band: Band, iteration: Iteration, radii: Radii
-) -> BandFindings:
+def _read_findings(events: BandEvents, stages: StageSet, learning: Learning) -> BandFindings:
     """Read what a band tells of its photons, once nothing needs the radiances of the band any more."""
-    sums, fraction = stages.density_estimator.sums, learning.photon_fraction(iteration)
-    taken = sums.photons_taken(band.pixel_count)
-    stages.caustic_radii.narrow(context.blocks, sums, band, radii, fraction, context.timers)
-    if not iteration.weighs_noise:
+    context, sums, band = events.context, events.sums, events.band
+    taken, fraction = sums.photons_taken(band.pixel_count), learning.photon_fraction(events.iteration)
+    stages.caustic_radii.narrow(context.blocks, sums, band, events.radii, fraction, context.timers)
+    if not events.iteration.weighs_noise:
         return BandFindings(taken)
-    gather, importons = stages.final_gather, stages.importons
-    return BandFindings(taken, stages.photon_noise.sample(context, importons, gather, sums, band, radii))
+    return BandFindings(taken, stages.photon_noise.sample(events))
 
 
 def _learn(

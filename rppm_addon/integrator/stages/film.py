@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UpdatePPMParams: running means of radiance and of the passes, per pixel."""
 
+from bisect import bisect_right
 from collections.abc import Mapping
 
 import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import Part, StorageBuffer, StorageBuffers
-from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
@@ -16,13 +16,10 @@ from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES, SCATTERED_LIGHT, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer, FilmParts
-from ..common.iteration import Iteration
-from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels
-from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
 from .cryptomatte import Cryptomatte
-from .importons import Importons
+from .events import BandEvents, Listener
 from .motion_vectors import MotionVectors
 
 Record(
@@ -85,6 +82,11 @@ def _pass_paths(sizes: StageSizes) -> int:
     return band_pixels(sizes) if _show_seen_light(sizes) else 0
 
 
+def pass_bits(sizes: StageSizes) -> int:
+    """The passes that the film keeps, as bits by their places in FILM_PASSES."""
+    return sum(1 << FILM_PASSES.index(entry) for entry in sizes.passes if entry in FILM_PASSES)
+
+
 def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
     """(height, width, 4) radiance and alpha of a film, which is changed, as it is shown."""
     radiance[..., :3] *= exposure
@@ -92,7 +94,7 @@ def exposed(radiance: np.ndarray, exposure: float) -> np.ndarray:
     return radiance
 
 
-class Film(Stage):
+class Film(Listener):
     """Means over the iterations: 16 bytes of radiance and alpha a pixel, 4 for each channel of a pass, and 8 of their
     counts where there are passes; 16 more where viewports filter the picture."""
 
@@ -119,8 +121,10 @@ class Film(Stage):
         self._accumulate_aovs = library.compute("film/aovs.comp") if aov_channels(sizes) else None
         self._aov_channels = aov_channels(sizes)
         self.width, self.height, self._bands = sizes.width, sizes.height, sizes.bands
+        self._first_rows = [band.first_row for band in sizes.bands]
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Of those wanted, the ones that passes.comp writes."""
+        self._passes = pass_bits(sizes)
         self.found_passes = sizes.passes
         """All that read_passes gives, and those that do not come of iterations."""
         self._groups = tuple(entry for entry in sizes.passes if entry.light_group)
@@ -129,98 +133,43 @@ class Film(Stage):
         """Whether it is told of each path when it has found its first surface."""
         self._is_filtered = sizes.is_filtered
 
-    def add_passes(
-        self,
-        context: StageContext,
-        importons: Importons,
-        band: Band,
-        iteration: Iteration,
-        segment: int,
-    ) -> None:
-        """Add the first surfaces that the camera paths of a band have found in a segment."""
-        if not iteration.enters_film:
+    def direct_light_found(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_found: add the first surfaces that the camera paths have found in a segment, and the
+        shadows on catchers among them."""
+        if not events.iteration.enters_film:
             return
+        context, importons, band = events.context, events.importons, events.band
         self._cryptomatte.add(context, importons, band, segment)
         if not self._looks:
             return
-        self._motion_vectors.add(context, importons, self._counts.of(band), band, iteration, segment)
-        importons.living.run(
-            self._pass_program,
-            {
-                **context.blocks,
-                **importons.blocks,
-                **self.pass_blocks(band),
-                "PassCounts": self._counts.of(band),
-            },
-            self._parameters(context, band, segment),
-        )
+        counts, parameters = self._counts.of(band), self._parameters(context, band, segment)
+        self._motion_vectors.add(context, importons, counts, band, events.iteration, segment)
+        blocks = {**context.blocks, **importons.blocks, "PassCounts": counts}
+        importons.living.run(self._pass_program, blocks, parameters)
+        if self._caught_shadows is not None:
+            importons.living.run(self._caught_shadows, blocks, parameters)
 
-    def add_caught_shadows(
-        self,
-        context: StageContext,
-        importons: Importons,
-        band: Band,
-        iteration: Iteration,
-        segment: int,
-    ) -> None:
-        """Add the shadows on the catchers that the camera paths of a band met in a segment whose surfaces add_passes
-        has had, before they scatter on."""
-        if self._caught_shadows is None or not iteration.enters_film:
+    def paths_scattered(self, events: BandEvents, segment: int) -> None:
+        """Listener.paths_scattered: add the light that the camera paths met in a segment."""
+        if self._seen_light is None or not events.iteration.enters_film:
             return
-        importons.living.run(
-            self._caught_shadows,
-            {**context.blocks, **importons.blocks, **self.pass_blocks(band)},
-            self._parameters(context, band, segment),
-        )
-
-    def add_seen_light(
-        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int
-    ) -> None:
-        """Add the light that the camera paths of a band met in a segment whose surfaces add_passes has had."""
-        if self._seen_light is None or not iteration.enters_film:
-            return
+        context, importons, band = events.context, events.importons, events.band
         importons.living.run(
             self._seen_light,
-            {**context.blocks, **importons.blocks, **self.pass_blocks(band)},
+            {**context.blocks, **importons.blocks},
             self._parameters(context, band, segment),
         )
 
-    def pass_blocks(self, band: Band) -> dict[str, Bindable]:
-        """Storage blocks of programs that include shaders/film/passes.glsl."""
-        return {**self.blocks, "PassValues": self._values[self._bands.index(band)].buffer}
-
-    def group_values(self, band: Band) -> moderngl.Buffer:
-        """GroupValues of a band."""
-        return self._group_values.of(band)
-
-    def place_parameters(self, band: Band) -> dict[str, float]:
-        """Their parameters."""
-        return {
-            "pixels": band.pixel_count,
-            "passes": sum(1 << FILM_PASSES.index(entry) for entry in self.passes),
-        }
-
-    def _parameters(self, context: StageContext, band: Band, segment: int) -> dict[str, object]:
-        mist = context.scene.world.mist
-        return {
-            **self.place_parameters(band),
-            "segment": segment,
-            "keeps_paths": self._seen_light is not None,
-            "mist_start": mist.start,
-            "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
-            "mist_exponent": mist.exponent,
-            "world_origin": context.scene.world_offset,
-        }
-
-    def accumulate(self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band) -> None:
-        """Add the band's estimate of an iteration."""
+    def band_ended(self, events: BandEvents) -> None:
+        """Listener.band_ended: add the band's estimate, and what AOV Output nodes have written."""
+        context, band, sums = events.context, events.band, events.sums
         with context.timers.stage("film"):
             self._accumulate.run(
                 band.pixel_count,
                 {
                     **context.blocks,
                     **sums.blocks,
-                    "Radiances": radiances.buffer,
+                    **events.importons.blocks,
                     "Film": self._radiance.of(band),
                     "PhotonLight": self._photon_light.of(band),
                 },
@@ -231,16 +180,32 @@ class Film(Stage):
                     "is_filtered": self._is_filtered,
                 },
             )
-
-    def add_aovs(self, context: StageContext, importons: Importons, band: Band) -> None:
-        """Add what AOV Output nodes have written of the camera paths of a band."""
         if self._accumulate_aovs is not None:
             count = band.pixel_count * self._aov_channels
             self._accumulate_aovs.run(
                 count,
-                {**context.blocks, **importons.blocks, "FilmAovs": self._aov_values.of(band)},
+                {**context.blocks, **events.importons.blocks, "FilmAovs": self._aov_values.of(band)},
                 {"count": count},
             )
+
+    def blocks_of(self, band: Band) -> dict[str, Bindable]:
+        """Storage blocks of a band's passes: those of shaders/film/passes.glsl, and GroupValues."""
+        number = bisect_right(self._first_rows, band.first_row) - 1
+        values = self._values[number].buffer
+        return {"PassValues": values, "GroupValues": self._group_values.of(band)}
+
+    def _parameters(self, context: StageContext, band: Band, segment: int) -> dict[str, object]:
+        mist = context.scene.world.mist
+        return {
+            "pixels": band.pixel_count,
+            "passes": self._passes,
+            "segment": segment,
+            "keeps_paths": self._seen_light is not None,
+            "mist_start": mist.start,
+            "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
+            "mist_exponent": mist.exponent,
+            "world_origin": context.scene.world_offset,
+        }
 
     @property
     def radiance(self) -> FilmParts:

@@ -11,17 +11,8 @@ from ...gl.programs import ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode
-from ..common.band import Band
-from ..common.iteration import Iteration
-from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels
-from ..density_estimation.radii import Radii
-from ..density_estimation.splat_sums import SplatSums
-from ..device_scene.stage_context import StageContext
-from .direct_light import DirectLight
-from .film import Film
-from .final_gather import FinalGather
-from .importons import Importons
+from .events import BandEvents, Listener
 
 Record(
     "LightGroupParameters",
@@ -43,7 +34,7 @@ def _grouped_values(sizes: StageSizes) -> int:
     return _CHANNELS * _KINDS_OF_LIGHT * len(sizes.light_groups) * band_pixels(sizes)
 
 
-class LightGroups(Stage):
+class LightGroups(Listener):
     """Finds the light of each group in a band and adds it to the film's passes; without groups there are neither
     programs nor buffers."""
 
@@ -67,16 +58,11 @@ class LightGroups(Stage):
         if self._groups:
             self._grouped.clear()
 
-    def add_direct_light(
-        self,
-        context: StageContext,
-        importons: Importons,
-        direct_light: DirectLight,
-        iteration: Iteration,
-    ) -> None:
-        """What DirectLight.add has added, and light objects that the paths pass, before they scatter on."""
-        if not (self._groups and iteration.enters_film):
+    def direct_light_found(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_found: add what DirectLight.add has added, and light objects that the paths pass."""
+        if not (self._groups and events.iteration.enters_film):
             return
+        context, importons, direct_light = events.context, events.importons, events.direct_light
         with context.timers.stage("light groups"):
             if context.settings.direct_light is DirectLightMode.RAYS:
                 direct_light.living_rays.run(
@@ -90,29 +76,23 @@ class LightGroups(Stage):
                 {"groups": self._groups},
             )
 
-    def add_seen_light(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
-        """What else the paths have met, once they have scattered."""
-        if not (self._groups and iteration.enters_film):
+    def paths_scattered(self, events: BandEvents, segment: int) -> None:
+        """Listener.paths_scattered: add what else the paths have met."""
+        if not (self._groups and events.iteration.enters_film):
             return
-        with context.timers.stage("light groups"):
-            importons.living.run(
+        with events.context.timers.stage("light groups"):
+            events.importons.living.run(
                 self._programs["seen"],
-                {**context.blocks, **importons.blocks, **self.blocks},
+                {**events.context.blocks, **events.importons.blocks, **self.blocks},
                 self._parameters(),
             )
 
-    def accumulate(
-        self,
-        context: StageContext,
-        final_gather: FinalGather,
-        sums: SplatSums,
-        film: Film,
-        band: Band,
-        radii: Radii,
-    ) -> None:
-        """Add the band's estimate of an iteration to the film's passes, with what photons and gathering rays bring."""
+    def band_ended(self, events: BandEvents) -> None:
+        """Listener.band_ended: add the band's estimate to the film's passes, with what photons and gathering rays
+        bring."""
         if not self._groups:
             return
+        context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light groups"):
             light = {**context.blocks, **sums.blocks, **self.blocks}
             for group in range(self._groups):
@@ -125,10 +105,10 @@ class LightGroups(Stage):
                 if context.gathers:
                     found = {**final_gather.blocks, "FoundRadiances": self._found.buffer}
                     self._programs["found"].run(band.pixel_count, {**light, **found}, parameters)
-                    final_gather.share_found(context, self._found.buffer, self._taken.buffer, band, radii)
+                    final_gather.share_found(context, self._found.buffer, self._taken.buffer, band, events.radii)
                 self._programs["accumulate"].run(
                     band.pixel_count,
-                    {**light, "Radiances": self._taken.buffer, "GroupValues": film.group_values(band)},
+                    {**light, "Radiances": self._taken.buffer},
                     parameters,
                 )
 

@@ -17,16 +17,11 @@ from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
-from ..common.iteration import Iteration
-from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
-from ..density_estimation.radii import Radii
-from ..density_estimation.splat_sums import LightSum, SplatSums
-from ..device_scene.stage_context import StageContext
-from .direct_light import DirectLight
-from .film import Film
+from ..density_estimation.splat_sums import LightSum
+from .events import BandEvents, Listener
+from .film import pass_bits
 from .final_gather import FinalGather
-from .importons import Importons
 
 Record(
     "LightPassParameters",
@@ -62,7 +57,7 @@ def _caustic_pixels(sizes: StageSizes) -> int:
     return band_pixels(sizes) if sizes.has_caustics else 0
 
 
-class LightPasses(Stage):
+class LightPasses(Listener):
     """Adds to the film's passes what shadow rays, gathering rays and photons add to a band's radiance. Where none of
     these passes is wanted, there are neither programs nor buffers."""
 
@@ -74,6 +69,7 @@ class LightPasses(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
+        self._passes = pass_bits(sizes)
         self._kept = LightSum.of(sizes) & ~LightSum.GROUPS
         self._programs: dict[str, ComputeProgram] = {}
         if self._kept:
@@ -85,54 +81,36 @@ class LightPasses(Stage):
         if LightSum.CAUSTICS in self._kept:
             self._found_caustics.clear()
 
-    def add_direct_light(
-        self,
-        context: StageContext,
-        importons: Importons,
-        direct_light: DirectLight,
-        film: Film,
-        band: Band,
-        iteration: Iteration,
-        segment: int,
-    ) -> None:
-        """What DirectLight.add has added, before the paths scatter on."""
-        if not (self._kept and iteration.enters_film) or context.settings.direct_light is not DirectLightMode.RAYS:
+    def direct_light_found(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_found: add what DirectLight.add has added."""
+        context, direct_light, band = events.context, events.direct_light, events.band
+        by_rays = context.settings.direct_light is DirectLightMode.RAYS
+        if not (self._kept and events.iteration.enters_film and by_rays):
             return
         with context.timers.stage("light passes"):
             direct_light.living_rays.run(
                 self._programs["direct"],
-                {**context.blocks, **importons.blocks, **direct_light.blocks, **self.blocks, **film.pass_blocks(band)},
-                self._parameters(film, band, segment),
+                {**context.blocks, **events.importons.blocks, **direct_light.blocks, **self.blocks},
+                self._parameters(band, segment),
             )
 
-    def add_indirect_light(
-        self,
-        context: StageContext,
-        importons: Importons,
-        final_gather: FinalGather,
-        sums: SplatSums,
-        film: Film,
-        band: Band,
-        radii: Radii,
-    ) -> None:
-        """What FinalGather.share has added, and what photons have."""
+    def band_ended(self, events: BandEvents) -> None:
+        """Listener.band_ended: add what FinalGather.share has added, and what photons have."""
         if not self._kept:
             return
+        context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light passes"):
-            parameters = self._parameters(film, band) | {"quantum": sums.quantum}
-            light = {**context.blocks, **sums.blocks, **film.pass_blocks(band)}
-            self._programs["photons"].run(band.pixel_count, light, parameters)
+            parameters = self._parameters(band) | {"quantum": sums.quantum}
+            blocks = {**context.blocks, **sums.blocks, **events.importons.blocks, **final_gather.blocks, **self.blocks}
+            self._programs["photons"].run(band.pixel_count, blocks, parameters)
             if not context.gathers:
                 return
-            blocks = {**context.blocks, **importons.blocks, **final_gather.blocks, **sums.blocks, **self.blocks}
             self._programs["found"].run(band.pixel_count, blocks, parameters)
             for part, found in self._parts(final_gather).items():
                 self._taken.clear()
-                final_gather.share_found(context, found, self._taken.buffer, band, radii)
+                final_gather.share_found(context, found, self._taken.buffer, band, events.radii)
                 self._programs["gathered"].run(
-                    band.pixel_count,
-                    {**blocks, **film.pass_blocks(band), "Radiances": self._taken.buffer},
-                    parameters | {"part": int(part)},
+                    band.pixel_count, {**blocks, "Radiances": self._taken.buffer}, parameters | {"part": int(part)}
                 )
 
     def _parts(self, final_gather: FinalGather) -> dict[_Gathered, moderngl.Buffer]:
@@ -144,9 +122,10 @@ class LightPasses(Stage):
             parts[_Gathered.CAUSTICS] = self._found_caustics.buffer
         return parts
 
-    def _parameters(self, film: Film, band: Band, segment: int = 0) -> dict[str, float]:
+    def _parameters(self, band: Band, segment: int = 0) -> dict[str, float]:
         return {
-            **film.place_parameters(band),
+            "pixels": band.pixel_count,
+            "passes": self._passes,
             "segment": segment,
             "count": band.pixel_count,
             "scattered": LightSum.SCATTERED in self._kept,

@@ -13,19 +13,15 @@ import math
 import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
-from ...gl.buffers import GrowingBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ..common.band import Band
 from ..common.film_buffers import BANDS_TOGETHER, FilmBuffer, FilmParts
-from ..common.iteration import Iteration
-from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
-from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
+from .events import BandEvents, Listener
 
 Record("HalfParameters", count="uint", quantum="float", first_pixel="uint", number="uint")
 Record("NoiseParameters", count="uint", width="uint", height="uint", columns="uint", exposure="float", balance="float")
@@ -75,7 +71,7 @@ def _block_count(sizes: StageSizes) -> int:
     return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK) if sizes.measures_noise else 0
 
 
-class NoiseEstimate(Stage):
+class NoiseEstimate(Listener):
     """The mean of half of the iterations, 12 bytes a pixel; nothing where the picture does not end with its noise."""
 
     memory_group = "passes"
@@ -90,16 +86,15 @@ class NoiseEstimate(Stage):
         self._measure = library.compute("noise_estimate/measure.comp") if self.is_on else None
         self._width, self._columns = sizes.width, math.ceil(sizes.width / BLOCK)
 
-    def add(
-        self, context: StageContext, radiances: GrowingBuffer, sums: SplatSums, band: Band, iteration: Iteration
-    ) -> None:
-        """Add the band's estimate, as Film.accumulate does, of an iteration that belongs to the half."""
+    def band_ended(self, events: BandEvents) -> None:
+        """Listener.band_ended: add the band's estimate, as Film does, of an iteration that belongs to the half."""
+        iteration, band, sums = events.iteration, events.band, events.sums
         if self._add is None or not is_in_half(iteration.number):
             return
-        with context.timers.stage("noise"):
+        with events.context.timers.stage("noise"):
             self._add.run(
                 band.pixel_count,
-                {**sums.blocks, "Radiances": radiances.buffer, "HalfMeans": self._half.of(band)},
+                {**sums.blocks, **events.importons.blocks, "HalfMeans": self._half.of(band)},
                 {
                     "count": band.pixel_count,
                     "quantum": sums.quantum,

@@ -10,15 +10,8 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ..common.band import Band
-from ..common.iteration import Iteration
-from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
-from ..density_estimation.radii import Radii
-from ..density_estimation.splat_sums import SplatSums
-from ..device_scene.stage_context import StageContext
-from .final_gather import FinalGather
-from .importons import Importons
+from .events import BandEvents, Listener
 
 Record(
     "PhotonNoiseParameters",
@@ -45,7 +38,7 @@ def _samples(sizes: StageSizes) -> int:
     return math.ceil(sizes.width / step) * math.ceil(sizes.bands[0].rows / step)
 
 
-class PhotonNoise(Stage):
+class PhotonNoise(Listener):
     """Reads samples of bands, and counts the vertices of camera paths, in iterations that weigh noise."""
 
     memory_group = "passes"
@@ -66,24 +59,19 @@ class PhotonNoise(Stage):
         """Forget the iteration before."""
         self.vertices = 0
 
-    def count(self, importons: Importons, iteration: Iteration) -> None:
-        """Count the vertices of a segment of camera paths. Waits for the device in iterations that weigh noise."""
-        if iteration.weighs_noise:
-            self.vertices += importons.living.read_count()
+    def direct_light_found(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_found: count the vertices of a segment of camera paths. Waits for the device in
+        iterations that weigh noise."""
+        if events.iteration.weighs_noise:
+            self.vertices += events.importons.living.read_count()
 
-    def sample(
-        self,
-        context: StageContext,
-        importons: Importons,
-        gather: FinalGather,
-        sums: SplatSums,
-        band: Band,
-        radii: Radii,
-    ) -> np.ndarray:
+    def sample(self, events: BandEvents) -> np.ndarray:
         """(rows, columns, 4) float32 luminances of a band's samples, with the film's exposure, for NoiseSamples.of.
 
         To be asked for when nothing needs the band's radiances any more. Waits for the device.
         """
+        context, importons, gather = events.context, events.importons, events.final_gather
+        sums, band = events.sums, events.band
         first_row = -band.first_row % self.step
         rows, columns = max(math.ceil((band.rows - first_row) / self.step), 0), math.ceil(band.columns / self.step)
         parameters = {
@@ -101,7 +89,7 @@ class PhotonNoise(Stage):
                 {**parameters, "count": band.pixel_count},
             )
             if context.gathers:
-                gather.share_found(context, gather.radiances.buffer, importons.radiances.buffer, band, radii)
+                gather.share_found(context, gather.radiances.buffer, importons.radiances.buffer, band, events.radii)
             self._join.run(
                 rows * columns,
                 {**importons.blocks, **self.blocks},

@@ -9,15 +9,18 @@ from ...gl.programs import Bindable, ProgramLibrary
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits
 from ..common.band import Band
+from ..common.iteration import Iteration
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import NO_DEMANDS, ViewportDemands
 from ..density_estimation.caustic_radii import CausticRadii
 from ..density_estimation.density_estimator import DensityEstimator
+from ..density_estimation.radii import Radii
 from ..device_scene.stage_context import StageContext
 from .camera_hits import CameraHits
 from .coverage import Coverage
 from .direct_light import DirectLight
+from .events import BandEvents, Listeners
 from .film import Film
 from .final_gather import FinalGather
 from .gbuffer import GBuffer
@@ -74,6 +77,10 @@ class StageSet(BufferSet):
                 _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)
             )
         self.coverage = Coverage(library)
+        self.listeners = Listeners(
+            [self.photon_noise, self.film, self.noise_estimate, self.light_passes, self.light_groups]
+        )
+        """Told of what happens in a band, in this order."""
         self.bands = self._sizes.bands
 
     def fits(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> bool:
@@ -92,7 +99,17 @@ class StageSet(BufferSet):
 
     def blocks_of(self, band: Band) -> dict[str, Bindable]:
         """Storage blocks of the stages that are declared once (BufferSet.blocks), with those of a band."""
-        return {**self.blocks, **self.camera_hits.blocks, "RadiusFactors": self.caustic_radii.factors(band)}
+        return {
+            **self.blocks,
+            **self.camera_hits.blocks,
+            **self.film.blocks_of(band),
+            "RadiusFactors": self.caustic_radii.factors(band),
+        }
+
+    def events_of(self, context: StageContext, iteration: Iteration, band: Band, radii: Radii) -> BandEvents:
+        """What listeners are told of a band."""
+        sums = self.density_estimator.sums
+        return BandEvents(context, iteration, band, radii, self.importons, self.direct_light, self.final_gather, sums)
 
     @property
     def memory_groups(self) -> dict[str, dict[str, int]]:
