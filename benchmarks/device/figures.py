@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.scene.errors import RppmError
 

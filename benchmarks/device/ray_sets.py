@@ -7,7 +7,7 @@ from rppm_addon.integrator.acceleration.acceleration_structure import Accelerati
 from rppm_addon.integrator.algorithm import trace_photons
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 
 KINDS = ("camera", "diffuse bounce", "photon")

@@ -18,7 +18,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import HIT
+from rppm_addon.integrator.common.records.rays import HIT
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.integrator.deep_cubemap.placement import radius_about
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper

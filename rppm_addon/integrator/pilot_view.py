@@ -11,10 +11,11 @@ from ..scene.camera import Camera
 from .common.band import Band
 from .common.camera_view import camera_view
 from .common.iteration import Iteration
-from .common.records import GATHERING_VERTEX, HIT, NO_TRIANGLE, RAY
+from .common.records.rays import HIT, NO_TRIANGLE, RAY
 from .density_estimation.radii import Radii, radius_in_pixels
 from .device_scene.stage_context import StageContext
 from .lights.portals import passes_portal
+from .stages.final_gather import GATHERING_VERTEX
 from .stages.stage_set import StageSet
 
 MOST_PIXELS = 1 << 14

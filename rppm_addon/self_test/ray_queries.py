@@ -11,7 +11,7 @@ from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..integrator.acceleration.acceleration_structure import AccelerationStructure
 from ..integrator.common.living_paths import LivingPaths
-from ..integrator.common.records import HIT, NO_TRIANGLE, RAY
+from ..integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 from ..integrator.deep_cubemap.deep_cubemap import DeepCubemap
 
 Record("BruteForceParameters", first_ray="uint", end_ray="uint", triangle_count="uint")

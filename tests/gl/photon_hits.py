@@ -5,7 +5,7 @@ import numpy as np
 
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import HIT
+from rppm_addon.integrator.common.records.rays import HIT
 from rppm_addon.integrator.stages.light_gbuffer import LightGBuffer
 from rppm_addon.integrator.stages.photon_emission import PhotonEmission
 from rppm_addon.scene import Scene

@@ -14,7 +14,7 @@ import numpy as np
 
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator.common import records  # noqa: F401  declares Closure
+from rppm_addon.integrator.common.records import closures  # noqa: F401  declares Closure
 from rppm_addon.materials import albedo_tables
 from rppm_addon.materials.node_kinds import FLOAT
 from rppm_addon.materials.nodes.shaders import KINDS

@@ -8,8 +8,9 @@ import moderngl
 from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
-from ..common import records  # noqa: F401  the kernels include Ray and Hit
 from ..common.living_paths import LivingPaths
+from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
+from ..common.records.triangles import TRIANGLE_VERTICES  # noqa: F401  likewise
 
 MARGIN = 2.0**-20
 """How far cells and boxes are widened, in radii of the scene. That is thirty times the rounding error of float

@@ -5,10 +5,47 @@ import math
 
 import numpy as np
 
+from ...gl.constants import Constants
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ...scene.camera import Camera, Panorama, PanoramaKind
 from ...scene.errors import SceneError
 from .band import MOST_RASTER_PIXELS
-from .records import CAMERA_VIEW, PROJECTIONS
+
+PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
+"""Of cameras, by number."""
+Constants("Projections", PROJECTION={name: number for number, name in enumerate(PROJECTIONS)})
+CAMERA_VIEW = Record(
+    "CameraView",
+    position="vec3",
+    projection="uint",
+    right="vec3",
+    clip_start="float",
+    up="vec3",
+    clip_end="float",
+    forward="vec3",
+    pixel_area="float",
+    window="vec4",
+    width="uint",
+    height="uint",
+    aperture_blades="uint",
+    aperture_radius="float",
+    focus_distance="float",
+    aperture_rotation="float",
+    aperture_ratio="float",
+    field_of_view="float",
+    panorama_range="vec4",
+    sensor="vec2",
+    lens="float",
+    polynomial_constant="float",
+    polynomial="vec4",
+)
+"""The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
+iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 1 of perspective
+cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
+``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
+``lens`` are in millimeters."""
+StorageBlock("Camera", "CameraView camera;")
 
 
 def is_rasterized(camera: Camera) -> bool:

@@ -11,7 +11,22 @@ from ...gl.buffers import SMALLEST, GrowingBuffer, refuse_large_block
 from ...gl.context import Context
 from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
-from .records import LIVING_PATHS_HEADER
+from ...gl.storage_blocks import StorageBlock
+
+LIVING_PATHS_HEADER = Record(
+    "LivingPathsHeader",
+    first="uint",
+    count="uint",
+    unused0="uint",
+    unused1="uint",
+    groups="uvec3",
+    unused2="uint",
+)
+"""How a list of paths begins (living_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
+out as a range of shaders/resolve/ranges.glsl, ``first`` being the word where the numbers begin: a list stands for the
+order of the hits where one program resolves them all."""
+StorageBlock("KeptPaths", "LivingPathsHeader kept; uint kept_paths[];")
+
 
 Record("CountParameters", count="uint")
 

@@ -8,8 +8,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.camera import Camera
 from ..common.band import bands_of
-from ..common.camera_view import camera_view
-from ..common.records import CAMERA_VIEW
+from ..common.camera_view import CAMERA_VIEW, camera_view
 from .deep_cubemap import DeepCubemap
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ...gl.timers import StageTimers
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
@@ -21,6 +22,9 @@ from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
+
+StorageBlock("RadiusFactors", "float radius_factors[];")
+
 
 Record("NarrowParameters", count="uint", most_factor="float", expected="float")
 

@@ -20,19 +20,12 @@ from ...scene.meshes import Instance, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
-from ..common.records import (
-    CLOSURE,
-    EMISSIVE_TRIANGLE,
-    EMITTER_LINK_SHIFT,
-    HIT,
-    LIGHT_NODE,
-    NO_TRIANGLE,
-    RAY,
-    EmitterTrait,
-)
+from ..common.records.closures import CLOSURE
+from ..common.records.rays import HIT, NO_TRIANGLE, RAY
 from ..surfaces.geometry import Geometry, Placement, objects_of_most
 from ..surfaces.resolve import Resolve
 from .light_links import NO_LINK, LightLinkTable
+from .light_records import EMISSIVE_TRIANGLE, EMITTER_LINK_SHIFT, LIGHT_NODE, EmitterTrait
 from .light_tree import LightTree, leaf_numbers, morton_order, triangle_leaves
 
 Record("EmittersParameters", photons="uint")

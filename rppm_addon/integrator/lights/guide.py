@@ -17,7 +17,7 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ..common.records import LightShape
+from .light_records import LightShape
 
 StorageBlock("PhotonCells", "uint photon_cells[];")
 Constants("GuideCells", NO_CELL=0xFFFFFFFF, CELL_CONTRIBUTED=1 << 31)

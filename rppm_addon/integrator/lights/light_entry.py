@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ...scene.lights import Light, LightKind
-from ..common.records import LIGHT, LIGHT_SHADOWLESS, LIGHT_SOFT, LightShape
+from .light_records import LIGHT, LIGHT_SHADOWLESS, LIGHT_SOFT, LightShape
 
 
 def spot_share(cosine_cone: float, blend: float) -> float:

@@ -5,7 +5,7 @@ import numpy as np
 
 from ...scene.light_linking import ALL_SETS, LightLinking
 from ...scene.lights import Light
-from ..common.records import LIGHT_LINK
+from .light_records import LIGHT_LINK
 
 NO_LINK = 0
 """The number of what shines on everything and is stopped by everything."""

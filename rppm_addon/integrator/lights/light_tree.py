@@ -14,7 +14,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
-from ..common.records import LIGHT_NODE, LightShape
+from .light_records import LIGHT_NODE, LightShape
 
 _MORTON_BITS = 10
 _SLACK = 1e-5

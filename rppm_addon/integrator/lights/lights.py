@@ -17,16 +17,6 @@ from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
 from ..common.known import known
-from ..common.records import (
-    LIGHT,
-    LIGHT_HOLDS_SURFACES,
-    LIGHT_LINK,
-    LIGHT_NODE,
-    LIGHT_SOFT,
-    LIGHT_THROUGH_PORTALS,
-    NO_LIGHT_GROUP,
-    LightShape,
-)
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -36,6 +26,16 @@ from .guide import Guide
 from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
+from .light_records import (
+    LIGHT,
+    LIGHT_HOLDS_SURFACES,
+    LIGHT_LINK,
+    LIGHT_NODE,
+    LIGHT_SOFT,
+    LIGHT_THROUGH_PORTALS,
+    NO_LIGHT_GROUP,
+    LightShape,
+)
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
 from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name

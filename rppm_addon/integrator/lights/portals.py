@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...scene.lights import Light, LightKind
-from ..common.records import LIGHT, LightShape
 from .environment import Environment
 from .light_entry import light_entry
+from .light_records import LIGHT, LightShape
 
 PORTAL_PARAMETERS = {
     "portal_count": "uint",

@@ -5,7 +5,7 @@ import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
 from ..common.band import Band
-from ..common.records import CAMERA_VIEW
+from ..common.camera_view import CAMERA_VIEW
 from ..common.stage import Stage
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext

@@ -9,15 +9,23 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
-from ..common.records import CLOSURE, HIT, LIGHT_SPLIT, RAY
+from ..common.records.closures import CLOSURE
+from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
+
+LIGHT_SPLIT = Record("LightSplit", glossy="vec3", light="uint", transmission="vec3", unused="float")
+"""Of what a shadow ray adds, by channel: the parts that such lobes scatter; the rest is diffuse. ``light`` is the
+number of the light that it goes to, if that is no triangle."""
+StorageBlock("LightSplits", "LightSplit light_splits[];")
+
 
 Record(
     "DirectLightParameters",

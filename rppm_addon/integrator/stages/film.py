@@ -22,6 +22,9 @@ from .cryptomatte import Cryptomatte
 from .events import BandEvents, Listener
 from .motion_vectors import MotionVectors
 
+StorageBlock("PassCounts", "uvec2 pass_counts[];")
+
+
 Record(
     "PassParameters",
     segment="uint",

@@ -15,13 +15,34 @@ from ...gl.buffers import GrowingBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
-from ..common.records import GATHERING_VERTEX
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.radii import Radii
 from ..density_estimation.splat_sums import SplatSums
 from ..device_scene.stage_context import StageContext
+
+GATHERING_VERTEX = Record(
+    "GatheringVertex",
+    position="vec3",
+    shared_radius="float",
+    weight="vec3",
+    normal="uint",
+    found="vec3",
+    radius="float",
+    hit="vec3",
+    hit_normal="uint",
+)
+"""Where a camera path set out to gather, with its BSDF and throughput over the ray's density, sr. ``radius`` is
+the importon's, meters, and so is ``shared_radius``, but for 0 where what the ray finds is not shared; less than 0
+marks none. ``normal`` is on the side that the ray went to, ``found`` the radiance of the world that the ray came to by
+sharp surfaces, but for the photons' share, at once, if the world is even, or from a second such vertex, of which
+``radius`` then is. ``hit`` is where the ray arrived at a surface that stores photons, ``hit_normal`` on its side; where
+it came to none, far behind all. Before the path gathers, ``position`` is where it was scattered last."""
+StorageBlock("GatheringVertices", "GatheringVertex gathering_vertices[];")
+StorageBlock("FoundRadiances", "vec4 found_radiances[];")
+
 
 Record("FoundParameters", count="uint", quantum="float")
 Record(

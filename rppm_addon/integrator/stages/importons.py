@@ -10,7 +10,10 @@ from ...gl.records import Record
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.living_paths import PathList
-from ..common.records import CAMERA_PATH, CLOSURE, HIT, IMPORTON, RAY
+from ..common.records.camera_paths import CAMERA_PATH
+from ..common.records.closures import CLOSURE
+from ..common.records.importons import IMPORTON
+from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, exiting_pixels
 from ..density_estimation.stored_photons import CameraRaster, TakingImportons

@@ -25,7 +25,7 @@ from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.known import known
 from ..common.living_paths import LivingPaths
-from ..common.records import LightShape
+from ..lights.light_records import LightShape
 from ..surfaces.geometry import Geometry
 
 LIGHT_VIEW = Record(

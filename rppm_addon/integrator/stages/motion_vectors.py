@@ -17,7 +17,7 @@ from ...scene.passes import VECTOR
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
-from ..common.records import TRIANGLE_VERTICES
+from ..common.records.triangles import TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 from ..surfaces.geometry import Geometry, Placement

@@ -7,9 +7,14 @@ from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ..common.living_paths import LivingPaths
 from ..common.stage_sizes import StageSizes, linked_photons
 from ..device_scene.stage_context import StageContext
+
+StorageBlock("PhotonLinks", "uint photon_links[];")
+"""Of the photons that left the lights, the numbers of their LightLinks."""
+
 
 Record("PhotonLinkParameters", count="uint")
 

@@ -5,26 +5,16 @@ import numpy as np
 
 from ...gl.buffer_sets import Part, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.programs import GROUP_SIZE, ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight
 from ..common.iteration import Iteration
 from ..common.living_paths import LivingPaths, PathList
-from ..common.records import (
-    ADJOINT_QUERY,
-    CLOSURE,
-    FLUX_GROUP,
-    FLUX_NAMES,
-    FLUX_SUMS,
-    HIT,
-    PHOTON,
-    PHOTON_DIFFERENTIAL,
-    PHOTON_ORIGIN,
-    PHOTON_PATH,
-    PHOTON_SEGMENT_SHIFT,
-    RAY,
-    PhotonFlag,
-)
+from ..common.records.closures import CLOSURE
+from ..common.records.photon_paths import PHOTON_ORIGIN, PHOTON_PATH, PhotonFlag
+from ..common.records.photons import PHOTON, PHOTON_SEGMENT_SHIFT
+from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii
@@ -35,6 +25,37 @@ from .photon_emission import PhotonEmission
 from .photon_groups import PhotonGroups
 from .photon_links import PhotonLinks
 from .subsurface import Subsurface
+
+PHOTON_DIFFERENTIAL = Record(
+    "PhotonDifferential",
+    place_u="vec3",
+    known="uint",
+    turn_u="vec3",
+    blur="float",
+    place_v="vec3",
+    spread="float",
+    turn_v="vec3",
+    before="float",
+)
+"""How far from a photon's ray its neighbors' run, along two directions: ``place`` in meters at the ray's origin,
+``turn`` by how much their directions differ. ``blur`` is the radius, meters, over which the light's own size spreads
+what comes there, before the first hit the light's, and ``spread`` by how much it grows with the distance; ``before`` is
+how far the ray's origin is from the light, INFINITY_DISTANCE from those without a place, or behind the first hit from
+the surface that turned the photon last. ``known`` is 0 where neighbors are not followed any more."""
+StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
+ADJOINT_QUERY = Record(
+    "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", reach="float", unused="uint"
+)
+"""How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
+closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
+the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on, and its ray ends at
+``reach``, meters. A share of 0 is not compared."""
+StorageBlock("AdjointQueries", "AdjointQuery adjoint_queries[];")
+FLUX_GROUP = GROUP_SIZE
+"""Paths whose fluxes the device sums (shaders/photons/balance.comp)."""
+FLUX_NAMES = ("emitted", "absorbed", "deposited", "escaped", "lost")
+FLUX_SUMS = Record("FluxSums", **dict.fromkeys((*FLUX_NAMES, "unused0", "unused1", "unused2"), "float"))
+
 
 Record("BeginSegmentParameters", segment="uint")
 Record(

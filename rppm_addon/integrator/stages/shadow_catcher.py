@@ -5,12 +5,16 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
-from ..common.records import RAY
+from ..common.records.rays import RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
+
+StorageBlock("LitCatchers", "uint lit_catchers[];")
+
 
 Record("ShadowCatcherParameters", segment="uint", first_pixel="uint")
 

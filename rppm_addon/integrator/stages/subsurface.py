@@ -7,13 +7,35 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
 from ..common.band import Band
 from ..common.living_paths import LivingPaths, PathList
-from ..common.records import HIT, RAY, SUBSURFACE_WALK, RandomStage
+from ..common.records.random_stages import RandomStage
+from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, subsurface_walks
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
+
+SUBSURFACE_WALK = Record(
+    "SubsurfaceWalk",
+    throughput="vec3",
+    instance="uint",
+    entry="vec3",
+    opposite="float",
+    extinction="vec3",
+    anisotropy="float",
+    albedo="vec3",
+    normal="uint",
+)
+"""A random walk below a surface of an instance: where it went in, the ``normal`` there (packed), and how far behind
+that the surface is met again, meters, less than 0 where it is not near; ``extinction``, 1/m, and ``albedo`` are those
+of single scattering."""
+StorageBlock("SubsurfaceWalks", "SubsurfaceWalk subsurface_walks[];")
+StorageBlock("WalkRays", "Ray walk_rays[];")
+StorageBlock("ExitHits", "Hit exit_hits[];")
+"""Where walks have come out; none of those that have not."""
+
 
 Record("EnterParameters", segment="uint", first_path="uint")
 Record(

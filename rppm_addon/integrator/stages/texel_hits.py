@@ -10,7 +10,7 @@ from ...gl.records import Record
 from ...scene.camera import Camera, Texels
 from ...scene.errors import SceneError
 from ..common.band import Band
-from ..common.records import NO_TRIANGLE
+from ..common.records.rays import NO_TRIANGLE
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext

@@ -18,7 +18,7 @@ from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..common.records import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
+from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 
 log = logging.getLogger(__name__)
 

@@ -13,15 +13,24 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
+from ...gl.storage_blocks import StorageBlock
 from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.scene import Scene
 from ..acceleration.acceleration_structure import AccelerationStructure
 from ..common.living_paths import LivingPaths
-from ..common.records import CAMERA_PATH, CLOSURE, PHOTON_PATH
+from ..common.records.camera_paths import CAMERA_PATH
+from ..common.records.closures import CLOSURE
+from ..common.records.photon_paths import PHOTON_PATH
 from .geometry import Geometry
 from .node_rays import NodeRays
 from .surface_attributes import SurfaceAttributes
+
+StorageBlock("HitOrder", "uint hit_order[];")
+"""Numbers of hits by the program that evaluates their material (shaders/resolve/ranges.glsl)."""
+StorageBlock("AovValues", "float aov_values[];")
+"""Of the paths of a band, what AOV Output nodes have written."""
+
 
 Record(
     "ResolveParameters",

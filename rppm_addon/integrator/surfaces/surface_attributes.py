@@ -15,7 +15,7 @@ from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
-from ..common.records import TERMINATOR_SHIFT, TERMINATOR_STEPS
+from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry, affine_inverses
 
 SHADING_INSTANCE = Record(

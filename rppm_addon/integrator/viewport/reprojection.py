@@ -17,8 +17,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.scene import Scene
 from ...scene.sharing import same_members
-from ..common.camera_view import camera_view, is_rasterized
-from ..common.records import CAMERA_VIEW
+from ..common.camera_view import CAMERA_VIEW, camera_view, is_rasterized
 from ..common.stage_sizes import StageSizes, film_pixels
 from ..first_look import FirstLook
 

@@ -4,7 +4,7 @@
 import numba
 import numpy as np
 
-from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 
 _LEAF = 4
 

@@ -13,7 +13,7 @@ from moving_scenes import everything_moves
 
 from rppm_addon.gl.context import Context
 from rppm_addon.integrator.bvh import bvh, clustering
-from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
 from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.scene import AccelerationStructure
 from rppm_addon.scene.errors import DeviceError

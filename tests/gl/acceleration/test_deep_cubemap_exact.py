@@ -16,7 +16,7 @@ from deep_cubemap_scenes import box, furnished_room, room_with_meshes, sphere, t
 
 from benchmarks.device.bounding_volumes import BoundingVolumes, build_nodes
 from rppm_addon.integrator.bvh.bvh import Bvh
-from rppm_addon.integrator.common.records import HIT, NO_TRIANGLE
+from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE
 from rppm_addon.self_test.ray_queries import TracedTriangles
 
 RAYS = 6600

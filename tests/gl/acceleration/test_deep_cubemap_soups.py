@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
 from rppm_addon.self_test.ray_queries import TracedTriangles, ray_records
 
 grid = st.integers(-4, 4).map(lambda i: i / 4)

@@ -11,7 +11,7 @@ from support.render_states import run_until
 
 from rppm_addon.gl.timers import StageTimers
 from rppm_addon.integrator.common import band
-from rppm_addon.integrator.common.records import IMPORTON, GatherFlag
+from rppm_addon.integrator.common.records.importons import IMPORTON, GatherFlag
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.caustic_radii import CausticRadii
 from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii, shrinkage

@@ -20,7 +20,7 @@ from scipy.stats import norm as normal
 from scipy.stats import t as student
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.integrator.density_estimation.radii import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RayVisibility, RenderSettings, Scene

@@ -18,7 +18,8 @@ from support.floor import floor_scene
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common import band
-from rppm_addon.integrator.common.records import PHOTON_CONTRIBUTED, PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
+from rppm_addon.integrator.common.records.photons import PHOTON_CONTRIBUTED
 from rppm_addon.integrator.density_estimation import density_estimator
 from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import (

@@ -8,7 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.common.records import IMPORTON
+from rppm_addon.integrator.common.records.importons import IMPORTON
 from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 
 SIZE = 24

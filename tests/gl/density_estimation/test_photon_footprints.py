@@ -7,7 +7,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 from test_footprints import GROUND, Ball, Plane, trace
 
-from rppm_addon.integrator.common.records import PHOTON_FLAG_BITS, PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PhotonFlag
 from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
 

@@ -7,15 +7,9 @@ from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import (
-    IMPORTON,
-    PHOTON,
-    PHOTON_CONTRIBUTED,
-    PHOTON_FLAG_BITS,
-    PHOTON_ORIGIN,
-    GatherFlag,
-    PhotonFlag,
-)
+from rppm_addon.integrator.common.records.importons import IMPORTON, GatherFlag
+from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PHOTON_ORIGIN, PhotonFlag
+from rppm_addon.integrator.common.records.photons import PHOTON, PHOTON_CONTRIBUTED
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.density_estimation.photon_grid import PhotonGrid
 from rppm_addon.integrator.density_estimation.radii import SplatRadii

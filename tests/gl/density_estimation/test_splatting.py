@@ -6,7 +6,8 @@ import pytest
 import scenes
 from packed_normals import unpack
 
-from rppm_addon.integrator.common.records import IMPORTON, PHOTON_FACTOR_SHIFT, PHOTON_FLAG_BITS, GatherFlag, PhotonFlag
+from rppm_addon.integrator.common.records.importons import IMPORTON, PHOTON_FACTOR_SHIFT, GatherFlag
+from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PhotonFlag
 from rppm_addon.integrator.density_estimation import splat_sums, splatting
 from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
 from rppm_addon.scene import DensityEstimation, DirectLight

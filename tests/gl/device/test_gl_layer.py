@@ -11,7 +11,7 @@ from rppm_addon.gl.buffers import GrowingBuffer
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator.common import records as integrator_records  # noqa: F401  registers the records
+from rppm_addon.integrator.stages import stage_set  # noqa: F401  registers the records
 from rppm_addon.scene.errors import DeviceError
 
 KINDS = ("float", "uint", "int", "vec2", "vec3", "vec4", "uvec2", "uvec3", "uvec4", "ivec2", "ivec3", "ivec4", "mat4")

@@ -9,7 +9,7 @@ import scenes
 from packed_normals import unpack
 
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.integrator.common.records import TRIANGLE_ATTRIBUTES
+from rppm_addon.integrator.common.records.triangles import TRIANGLE_ATTRIBUTES
 from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.scene import Camera, Instance, Scene
 from rppm_addon.scene.errors import DeviceError

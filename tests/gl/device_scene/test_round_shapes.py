@@ -10,7 +10,7 @@ import scenes
 from photon_hits import both_hits
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.common.records import NO_TRIANGLE
+from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
 from rppm_addon.integrator.lights.sources import SURFACES
 from rppm_addon.scene import Camera, Instance, Light, LightKind, MeshShape, RenderSettings, Scene
 

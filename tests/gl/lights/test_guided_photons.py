@@ -13,7 +13,9 @@ from test_light_sources import LIGHTS, floor_scene
 
 from rppm_addon.integrator.common import iteration
 from rppm_addon.integrator.common.iteration import Iteration
-from rppm_addon.integrator.common.records import PHOTON_CONTRIBUTED, PHOTON_PATH, RAY
+from rppm_addon.integrator.common.records.photon_paths import PHOTON_PATH
+from rppm_addon.integrator.common.records.photons import PHOTON_CONTRIBUTED
+from rppm_addon.integrator.common.records.rays import RAY
 from rppm_addon.integrator.lights import guide
 from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Scene, World
 

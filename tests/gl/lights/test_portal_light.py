@@ -14,8 +14,8 @@ from support.render_states import assert_same_state
 from test_guided_photons import emitted_moments
 from test_light_sampling import FOLDER, Iteration
 
-from rppm_addon.integrator.common.records import LIGHT_THROUGH_PORTALS
 from rppm_addon.integrator.lights import guide, portals
+from rppm_addon.integrator.lights.light_records import LIGHT_THROUGH_PORTALS
 from rppm_addon.integrator.lights.portals import light_through
 from rppm_addon.scene import Light, LightKind, Scene
 

@@ -8,7 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.materials import dispersion
 from rppm_addon.materials.albedo_tables import fresnel
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Material, RenderSettings, Scene, World

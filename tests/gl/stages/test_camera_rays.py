@@ -7,8 +7,9 @@ import scenes
 from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.sources import expand
-from rppm_addon.integrator.common.camera_view import camera_view
-from rppm_addon.integrator.common.records import CAMERA_PATH, CAMERA_VIEW, HIT, NO_TRIANGLE, RAY
+from rppm_addon.integrator.common.camera_view import CAMERA_VIEW, camera_view
+from rppm_addon.integrator.common.records.camera_paths import CAMERA_PATH
+from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 from rppm_addon.integrator.stages.gbuffer import GBuffer
 from rppm_addon.integrator.stages.primary_rays import PrimaryRays
 from rppm_addon.scene import (

@@ -8,10 +8,10 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.common.records import GATHERING_VERTEX
 from rppm_addon.integrator.density_estimation import radii
 from rppm_addon.integrator.stages import final_gather
 from rppm_addon.integrator.stages.coverage import Coverage
+from rppm_addon.integrator.stages.final_gather import GATHERING_VERTEX
 from rppm_addon.integrator.stages.photons import Photons
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 

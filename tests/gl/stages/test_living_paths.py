@@ -9,8 +9,8 @@ import scenes
 from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.common import band
-from rppm_addon.integrator.common.living_paths import LivingPaths
-from rppm_addon.integrator.common.records import LIVING_PATHS_HEADER, RAY
+from rppm_addon.integrator.common.living_paths import LIVING_PATHS_HEADER, LivingPaths
+from rppm_addon.integrator.common.records.rays import RAY
 from rppm_addon.scene import (
     Aperture,
     DirectLight,

@@ -8,7 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
 
 ANGLE = math.radians(50.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.gl.records import Record
-from rppm_addon.integrator.common.records import MicrofacetKind
+from rppm_addon.integrator.common.records.closures import MicrofacetKind
 from rppm_addon.materials import albedo_tables
 
 Record(

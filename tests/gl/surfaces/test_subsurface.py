@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.scene import (
     Camera,
     DensityEstimation,

@@ -4,7 +4,7 @@
 import numpy as np
 import scenes
 
-from rppm_addon.integrator.common.records import PhotonFlag
+from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene
 
 THICKNESS, COLOR, IOR, ROUGHNESS = 0.02, 0.9, 1.4, 0.5

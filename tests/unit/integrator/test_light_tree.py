@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.common.records import EMISSIVE_TRIANGLE, LIGHT_NODE
+from rppm_addon.integrator.lights.light_records import EMISSIVE_TRIANGLE, LIGHT_NODE
 from rppm_addon.integrator.lights.light_tree import tree_of, triangle_leaves
 
 

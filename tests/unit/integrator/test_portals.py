@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.common.records import LIGHT
+from rppm_addon.integrator.lights.light_records import LIGHT
 from rppm_addon.integrator.lights.portals import (
     light_through,
     passes_portal,

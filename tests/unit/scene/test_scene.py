@@ -8,7 +8,7 @@ import pytest
 from support.full_scene import assert_same, full_scene
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
-from rppm_addon.integrator.common.records import PHOTON_SEGMENT_SHIFT
+from rppm_addon.integrator.common.records.photons import PHOTON_SEGMENT_SHIFT
 from rppm_addon.materials.compiler import compile_graph
 from rppm_addon.scene import (
     Aperture,

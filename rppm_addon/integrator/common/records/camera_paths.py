@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Camera paths, and what they have been scattered by."""
+
+import enum
+
+from ....gl.constants import Constants
+from ....gl.records import Record
+from ....gl.storage_blocks import StorageBlock
+
+
+class Scatter(enum.IntEnum):
+    """What Cycles tells apart of how a surface scatters, in the order of the passes of it (scene/passes.py)."""
+
+    NONE = 0
+    DIFFUSE = 1
+    GLOSSY = 2
+    TRANSMISSION = 3
+
+
+class PathHistory(enum.IntFlag):
+    """What passes of light ask for of a camera path, above the Scatter of its first surface that is not transparent."""
+
+    AGAIN = 4
+    """More than one has scattered it."""
+    DIFFUSE = 8
+    """The last that did was diffuse."""
+    CAUSTIC = 16
+    """One that was not diffuse has scattered it after one that was: Cycles ends it there where Caustics are off."""
+
+
+Constants("PathHistory", SCATTER=Scatter, HISTORY=PathHistory)
+CAMERA_PATH = Record(
+    "CameraPath",
+    throughput="vec3",
+    scatter_pdf="float",
+    total_length="float",
+    straight_length="float",
+    primary_radius="float",
+    flags="uint",
+    depth="uint",
+    lit_normal="uint",
+    lit_from="uint",
+)
+"""A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
+the clip start, ``straight_length`` of those that led straight through surfaces since the last event of another kind,
+``primary_radius`` the radius of a pixel's cone at distance 1, or of its beam of parallel rays, from the primary hit on
+that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`` that of the scattered direction in
+1/sr where shadow rays sample the same light, else 0; ``depth`` counts bounces and transparent surfaces (Depths);
+``lit_normal`` and ``lit_from`` tell how these shadow rays chose their light (shaders/importons/scatter_point.glsl)."""
+StorageBlock("CameraPaths", "CameraPath camera_paths[];")
+StorageBlock("Radiances", "vec4 radiances[];")
+"""Of the pixels of a band, W/(m^2 sr), and alpha."""

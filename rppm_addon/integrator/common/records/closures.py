@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Closures: what a surface scatters, as resolved at a hit."""
+
+import enum
+
+from ....gl.constants import Constants
+from ....gl.records import Record
+from ....gl.storage_blocks import StorageBlock
+
+MICROFACET_LOBE = Record(
+    "MicrofacetLobe",
+    weight="vec3",
+    kind="uint",
+    f0="vec3",
+    alpha="float",
+    tint="vec3",
+    ior="float",
+    normal="uint",
+    anisotropy="uint",
+)
+"""A GGX, sheen, toon or hair lobe as seen from the side of the arriving path. ``ior`` is the index behind the surface
+over the index before it; f0 is the reflectance at normal incidence, or GLASS: the tint of what passes
+(weight is then the tint of what is reflected), or SHEEN: the two coefficients of its transformation.
+``alpha`` is the geometric mean of both axes', ``anisotropy`` their direction and ratio
+(common/bsdf/ggx.glsl), ``normal`` octahedral. What they are of hair says common/bsdf/hair.glsl."""
+
+
+class MicrofacetKind(enum.IntEnum):
+    """What a lobe is."""
+
+    NONE = 0
+    MIRROR = 1
+    """Reflects all; a black tint stands for the model of Ashikhmin and Shirley, which programs know where
+    ASHIKHMIN_LOBES is defined."""
+    METAL = 2
+    """Schlick's Fresnel from f0 to white; tint is of the edge at 82 degrees."""
+    DIELECTRIC = 3
+    """Reflection of a dielectric, f0 tinted."""
+    GLASS = 4
+    """Reflects and refracts; tint is of the reflectance at normal incidence."""
+    REFRACTION = 5
+    """Refracts only, without Fresnel's loss."""
+    COATED_GLASS = 6
+    """Glass whose reflectance at normal incidence is the tint."""
+    SHEET = 7
+    """Passes all through a sheet without thickness: a mirror's light, on the other side."""
+    SHEEN = 8
+    """f0.xy are the coefficients of sheen_pdf."""
+    VELVET = 9
+    """f0.x is sigma."""
+    TOON = 10
+    """f0 is the shape of a cone about the normal (common/bsdf/toon.glsl)."""
+    GLOSSY_TOON = 11
+    """About the mirrored direction."""
+    HAIR_REFLECTION = 12
+    """Of fibers, as those that follow: programs know them where HAIR_LOBES is defined."""
+    HAIR_TRANSMISSION = 13
+    HAIR_CHIANG = 14
+    HAIR_HUANG = 15
+
+
+Constants("MicrofacetKinds", LOBE=MicrofacetKind)
+Constants("HairLobes", HAIR_ON_STRAND=1)
+"""In ``anisotropy`` of principled hair: the lowest bit, which is no part of an angle."""
+CLOSURE_LOBE = Record(
+    "ClosureLobe",
+    weight="vec3",
+    kind="uint",
+    f0="vec3",
+    alpha="float",
+    ior="float",
+    normal="uint",
+    anisotropy="uint",
+)
+"""A MicrofacetLobe as closures keep it: the kind comes with the tint."""
+CLOSURE_LOBES = 3
+Constants("ClosureLobes", signed=True, CLOSURE_LOBES=CLOSURE_LOBES)
+CLOSURE = Record(
+    "Closure",
+    position="vec3",
+    triangle="uint",
+    diffuse="vec3",
+    flags="uint",
+    emission="vec3",
+    geometric_normal="uint",
+    transparent="vec3",
+    shading_normal="uint",
+    translucent="vec3",
+    diffuse_normal="uint",
+    distance="float",
+    material="uint",
+    diffuse_roughness="uint",
+    ray_offset="float",
+    lobes=(CLOSURE_LOBE, CLOSURE_LOBES),
+)
+"""All that scattering, storing and estimating need to know about a hit. Normals face the arriving
+path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The diffuse roughness comes with
+the albedo that its interreflection takes (common/bsdf/diffuse.glsl). ``ray_offset``: how far along the geometric normal
+rays begin, meters (common/geometry.glsl)."""
+StorageBlock("Closures", "Closure closures[];")
+StorageBlock("ExitClosures", "Closure exit_closures[];")
+"""Where camera paths that went below a surface have come out of it, and else what they have met."""
+TERMINATOR_SHIFT, TERMINATOR_STEPS = 10, 63
+"""Where in a closure's flags, and in how many steps, the shading offset of the shadow terminator stands."""
+Constants(
+    "Terminators",
+    TERMINATOR_SHIFT=TERMINATOR_SHIFT,
+    TERMINATOR_STEPS=TERMINATOR_STEPS,
+)

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Importons: where camera paths take photons."""
+
+import enum
+
+from ....gl.constants import Constants
+from ....gl.records import Record
+from ....gl.storage_blocks import StorageBlock
+
+IMPORTON = Record(
+    "Importon",
+    position="vec3",
+    radius="float",
+    direction="vec3",
+    geometric_normal="uint",
+    diffuse="vec3",
+    diffuse_normal="uint",
+    translucent="vec3",
+    diffuse_roughness="uint",
+    lobe_weight="vec3",
+    lobe_kind="uint",
+    lobe_f0="vec3",
+    lobe_alpha="float",
+    lobe_ior="float",
+    lobe_normal="uint",
+    lobe_anisotropy="uint",
+    next="uint",
+    gathers="uint",
+    shading_normal="uint",
+    least_radius="float",
+    history="uint",
+)
+"""A camera path vertex where radiance is estimated; radius 0 marks none. Photons that know their footprint count within
+a radius of their own between ``least_radius`` and ``radius``. The weights already hold
+the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
+``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag. ``history`` is the
+PathHistory of the path as it came, and above as it goes on, which stays when it ends; in the upper bits its depth
+(Depths) as it came."""
+StorageBlock("Importons", "Importon importons[];")
+
+
+class GatherFlag(enum.IntFlag):
+    """What importons gather; without the first they take all photons."""
+
+    GATHERS_BY_RAY = 1
+    """It leaves indirect photons to the path, which goes on for them."""
+    GATHERED_BY_RAY = 2
+    """It stands where that led, and counts for the vertex that the path set out from."""
+
+
+PHOTON_FACTOR_SHIFT = 8
+"""Above the flags, what diffused photons are multiplied by; 0 is 1."""
+Constants("PhotonFactor", PHOTON_FACTOR_SHIFT=PHOTON_FACTOR_SHIFT)
+Constants("GatherFlags", GATHERS_BY_RAY=GatherFlag.GATHERS_BY_RAY, GATHERED_BY_RAY=GatherFlag.GATHERED_BY_RAY)

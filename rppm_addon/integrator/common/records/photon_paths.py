@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photon paths, and the flags of photons."""
+
+import enum
+
+from ....gl.constants import Constants
+from ....gl.records import Record
+from ....gl.storage_blocks import StorageBlock
+
+PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint", depth="uint", escaped="float", deposited="float")
+"""Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
+(PhotonFlag) with the volumes it is in (materials/medium.glsl); its ``depth`` (Depths); and of its flux, W summed over
+the channels, what left the scene and what it still carried to the vertex at which a limit cut it off."""
+StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
+PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
+"""The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
+from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
+how often what it lights may have scattered on the way to the camera."""
+StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
+DEPTH_BITS = 11
+"""Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""
+Constants("Depths", DEPTH_BITS=DEPTH_BITS)
+
+
+class PhotonFlag(enum.IntFlag):
+    """Flags of photons and of their paths, which have the low ten bits (materials/medium.glsl)."""
+
+    ACTIVE = 1
+    STORED = 2
+    ESCAPED = 4
+    AFTER_ROUGH_BOUNCE = 8
+    """A diffuse or rough surface has scattered the path before."""
+    INDIRECT = 16
+    """What stores photons has scattered it."""
+    DIRECT = 32
+    """Nothing has scattered it, but for objects that cast no shadow."""
+    NOT_DIFFUSE = 64
+    """While it is direct: from a light that diffuse events do not see."""
+    NOT_GLOSSY = 128
+    NOT_TRANSMITTED = 256
+    CASTS_SHADOWS = 512
+    """Nothing but transparency lies between it and its light, which is not the world."""
+
+
+class PhotonHistory(enum.IntFlag):
+    """Further flags, in a photon where its path has NOT_GLOSSY and NOT_TRANSMITTED, which nobody asks photons for; in a
+    path so many bits lower, where a photon has ACTIVE and STORED."""
+
+    SCATTERED_BY_LOBE = 128
+    """What scattered it last was a lobe that is not diffuse."""
+    CAUSTIC = 256
+    """A diffuse surface has scattered what had come by such a lobe."""
+
+
+Constants("PhotonFlags", PHOTON=PhotonFlag)
+Constants("PhotonHistory", PHOTON=PhotonHistory, PHOTON_HISTORY_SHIFT=7)
+PHOTON_FLAG_BITS = 10
+"""Of a photon's word; the others are a float's."""
+Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
+Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
+"""A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""

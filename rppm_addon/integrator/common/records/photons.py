@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Photons that a path leaves where it meets surfaces."""
+
+from ....gl.constants import Constants
+from ....gl.records import Record
+from ....gl.storage_blocks import StorageBlock
+
+PHOTON = Record(
+    "Photon",
+    position="vec3",
+    flags="uint",
+    flux="vec3",
+    geometric_normal="uint",
+    direction="vec3",
+    distance="float",
+    path="uint",
+    depth="uint",
+    unused0="uint",
+    unused1="uint",
+)
+"""One light path vertex, 64 bytes (paper section 5.1). Those of a segment follow each other as its living paths do.
+``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
+transparent. The upper bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known.
+``path`` is the number of its path, with that of the segment above (PhotonNumbers); ``depth`` that of the path (Depths),
+with PHOTON_CONTRIBUTED once an importon takes it."""
+PHOTON_SEGMENT_SHIFT = 22
+"""Photons of an iteration are fewer (MOST_PHOTONS), and segments than what is left of a word (MOST_SEGMENTS)."""
+PHOTON_CONTRIBUTED = 1 << 31
+Constants("PhotonNumbers", PHOTON_SEGMENT_SHIFT=PHOTON_SEGMENT_SHIFT, PHOTON_CONTRIBUTED=PHOTON_CONTRIBUTED)
+StorageBlock("PhotonRange", "uint photon_first; uint photon_end;")
+"""Where the photons of the current segment begin among those of the iteration, and where they end."""
+StorageBlock("Photons", "Photon photons[];")
+StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint indirect_count; uint stored_photons[];")
+"""How many are stored, how many of these are diffused, and the numbers of the stored ones."""
+StorageBlock("PhotonGroups", "uint photon_groups[];")
+"""Of the photons that left the lights, the numbers of their light groups."""

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stages that draw random numbers of their own."""
+
+import enum
+
+from ....gl.constants import Constants
+
+
+@enum.unique
+class RandomStage(enum.IntEnum):
+    """What random numbers are for: those of one stage have nothing to do with those of another."""
+
+    EMISSION = 1
+    PHOTONS = 2
+    IMPORTONS = 3
+    DIRECT_LIGHT = 4
+    RESOLVE = 5
+    SPLATTING = 6
+    GATHERING = 7
+    CAMERA = 8
+    SHADOW_CATCHER = 9
+    WAVELENGTH = 10
+    SUBSURFACE = 11
+    SUBSURFACE_PHOTONS = 12
+    NODE_RAYS = 13
+    COVERAGE = 14
+
+
+Constants("RandomStages", STAGE=RandomStage)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Triangles of the scene in world space, and their attributes."""
+
+from ....gl.records import Record
+from ....gl.storage_blocks import StorageBlock
+
+TRIANGLE_ATTRIBUTES = Record(
+    "TriangleAttributes",
+    normal0="uint",
+    normal1="uint",
+    normal2="uint",
+    material="uint",
+    uv0="vec2",
+    uv1="vec2",
+    uv2="vec2",
+    instance="uint",
+    unused="uint",
+)
+"""Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle."""
+StorageBlock("Attributes", "TriangleAttributes attributes[];")
+TRIANGLE_VERTICES = Record("TriangleVertices", vertex0="vec4", vertex1="vec4", vertex2="vec4")
+StorageBlock("Triangles", "vec4 triangle_vertices[];")
+"""Three a triangle; for the fourth components see shaders/geometry/gather.comp."""

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lights, emissive triangles, the light tree and light links, as shaders read them."""
+
+import enum
+
+from ...gl.constants import Constants
+from ...gl.records import Record
+from ...gl.storage_blocks import StorageBlock
+
+NO_LIGHT_GROUP = 0xFFFFFFFF
+"""In place of the number of a light group."""
+Constants("LightGroups", NO_LIGHT_GROUP=NO_LIGHT_GROUP)
+StorageBlock("LightGroupTable", "uint light_group_table[];")
+"""Numbers of the light groups of the lights, then of the instances."""
+
+
+class LightShape(enum.IntEnum):
+    """Kinds of lights on the device: the emissive meshes are one, and so is the world."""
+
+    POINT = 0
+    SPOT = 1
+    SUN = 2
+    RECTANGLE = 3
+    ELLIPSE = 4
+    MESH = 5
+    WORLD = 6
+
+
+class EmitterTrait(enum.IntFlag):
+    """Of an emissive triangle."""
+
+    UNEVEN = 1
+    """What it emits varies with place or direction."""
+    REFLECTED = 2
+    """Smooth surfaces look for it: it is seen by reflection as by shadow rays, and hides what is behind it."""
+
+
+EMITTER_LINK_SHIFT = 8
+Constants("EmitterTraits", EMITTER=EmitterTrait, EMITTER_LINK_SHIFT=EMITTER_LINK_SHIFT)
+LIGHT_SOFT = 32
+"""Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
+LIGHT_SHADOWLESS = 64
+"""Likewise: no shadows are cast in its light."""
+LIGHT_THROUGH_PORTALS = 128
+"""Likewise: photons of the world that leave through portals. It is chosen for nothing else."""
+LIGHT_HOLDS_SURFACES = 256
+"""Likewise: there are surfaces within its radius, which a sphere lights from within and which hide parts of a disk."""
+Constants(
+    "Lights",
+    LIGHT=LightShape,
+    LIGHT_SOFT=LIGHT_SOFT,
+    LIGHT_SHADOWLESS=LIGHT_SHADOWLESS,
+    LIGHT_THROUGH_PORTALS=LIGHT_THROUGH_PORTALS,
+    LIGHT_HOLDS_SURFACES=LIGHT_HOLDS_SURFACES,
+)
+LIGHT = Record(
+    "Light",
+    position="vec3",
+    kind="uint",
+    axis_u="vec3",
+    radius="float",
+    axis_v="vec3",
+    area="float",
+    normal="vec3",
+    selection_probability="float",
+    strength="vec3",
+    selection_end="float",
+    cosine_cone="float",
+    blend="float",
+    spread_tangent="float",
+    spread_scale="float",
+    first_photon="uint",
+    photon_count="uint",
+    flags="uint",
+    first_cell="uint",
+    cells="uvec4",
+    falloff="float",
+    smoothing="float",
+    map_shape="uint",
+    map_extent="float",
+    map="vec4",
+    link="uint",
+    max_bounces="uint",
+)
+"""A light as integrator/lights/light_entry.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
+unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
+``selection_end`` the cumulated probability of choosing this or an earlier light, ``cells`` and
+``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lights' maps, left, bottom, width
+and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
+``map_extent`` the tangent of half of what a cone's map shows, ``link`` its LightLink,
+``max_bounces`` PhotonOrigin's."""
+EMISSIVE_TRIANGLE = Record(
+    "EmissiveTriangle",
+    radiance="vec3",
+    triangle="uint",
+    area="float",
+    cumulated="float",
+    share="float",
+    traits="uint",
+)
+"""A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
+choosing it, and that of choosing it or one before; its EmitterTraits, and from bit EMITTER_LINK_SHIFT on its
+LightLink."""
+StorageBlock("EmissiveTriangles", "EmissiveTriangle emissive_triangles[];")
+LIGHT_NODE = Record(
+    "LightNode",
+    low="vec3",
+    intensity="float",
+    high="vec3",
+    cosine_normals="float",
+    axis="vec3",
+    cosine_emission="float",
+    member="uint",
+    two_sided="uint",
+    light_sets="uvec2",
+)
+"""Lights below a node of the light tree: their box, meters; the sum of their intensities, W/sr, of a sun its
+irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; of a
+leaf the number of its light or emissive triangle; and the bits of the light sets that any of them shines on."""
+LIGHT_LINK = Record("LightLink", light_sets="uvec2", shadow_sets="uvec2")
+"""Bits of the sets of objects that lights shine on and that cast shadows in their light (scene/light_linking.py)."""
+StorageBlock("LightLinks", "LightLink light_links[];")
