@@ -8,7 +8,7 @@ const uint RAY_SINGULAR = 32u;  // with one of these: it has but one direction
 
 // What the last event of a camera path made of its ray.
 uint camera_ray_kind(uint flags) {
-    if ((flags & PATH_STRAIGHT) != 0u) return RAY_CAMERA;
+    if ((flags & PATH_CAMERA_TRANSPARENT) != 0u) return RAY_CAMERA;
     if ((flags & PATH_DIFFUSE) != 0u) return RAY_DIFFUSE;
     return ((flags & PATH_TRANSMITTED) != 0u ? RAY_TRANSMISSION : RAY_GLOSSY)
            | ((flags & PATH_SINGULAR) != 0u ? RAY_SINGULAR : 0u);

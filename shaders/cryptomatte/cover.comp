@@ -57,7 +57,8 @@ void main() {
     if (!(rays[index].maximum_distance > 0.0)) return;
     CameraPath path = camera_paths[index];
     Closure closure = closures[index];
-    if ((path.flags & PATH_STRAIGHT) == 0u || !closure_hit(closure) || closure_holdout(closure) >= 1.0) return;
+    if ((path.flags & PATH_CAMERA_TRANSPARENT) == 0u || !closure_hit(closure) || closure_holdout(closure) >= 1.0)
+        return;
     vec3 transparent = closure.transparent, throughput = path.throughput;
     bool catches = (closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u;
     // The layers follow each other: another one may have noted this very catcher.

@@ -252,7 +252,7 @@ void main() {
 #endif
     vec3 viewer = -ray.direction;
     PathShares shares = path_shares(index, closure, throughput, viewer, iteration.specular_alpha, gathers,
-                                    (flags & PATH_STRAIGHT) != 0u);
+                                    (flags & PATH_CAMERA_TRANSPARENT) != 0u);
     Parts parts;  // shares of it
     Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered), closure,
                                             throughput, shares, viewer, gathered, gathers, choices, parts);

@@ -20,7 +20,7 @@ void main() {
     uint index = living_path();
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
     bool catches = closure_hit(closures[index]) && (closures[index].flags & CLOSURE_CATCHES_SHADOWS) != 0u;
-    if (!catches || (camera_paths[index].flags & PATH_STRAIGHT) == 0u) return;
+    if (!catches || (camera_paths[index].flags & PATH_CAMERA_TRANSPARENT) == 0u) return;
     vec3 throughput = camera_paths[index].throughput;
     float seen = (throughput.r + throughput.g + throughput.b) / 3.0;
     add_to_pass(PASS_SHADOW_CATCHER, index, vec3(seen * float(lit_catchers[index]), seen, 0.0));

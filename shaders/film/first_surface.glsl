@@ -10,4 +10,6 @@ bool is_passed_by(Closure closure) {
 }
 
 // Whether a path still looks for it.
-bool looks_for_surface(uint flags) { return (flags & (PATH_STRAIGHT | PATH_SURFACE_FOUND)) == PATH_STRAIGHT; }
+bool looks_for_surface(uint flags) {
+    return (flags & (PATH_CAMERA_TRANSPARENT | PATH_SURFACE_FOUND)) == PATH_CAMERA_TRANSPARENT;
+}

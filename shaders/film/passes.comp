@@ -155,7 +155,7 @@ void main() {
         return;
     }
     CameraPath path = camera_paths[index];
-    bool straight = (path.flags & PATH_STRAIGHT) != 0u, looks = looks_for_surface(path.flags);
+    bool straight = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u, looks = looks_for_surface(path.flags);
     bool denoised =
         (parameters.passes & DENOISING_DATA) == 0u || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
     bool colored = straight && (parameters.passes & COLORS) != 0u;

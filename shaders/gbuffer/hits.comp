@@ -43,5 +43,6 @@ void main() {
     uint number = uint(visible.x + 0.5) | (uint(visible.y + 0.5) << 16u);
     rays[index] = ray;
     hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : seen_hit(ray, number - 1u);
-    camera_paths[index] = CameraPath(vec3(1.0), 0.0, seen.passed, 0.0, sqrt(seen.area / PI), PATH_STRAIGHT, 0u, 0u, 0u);
+    camera_paths[index] =
+        CameraPath(vec3(1.0), 0.0, seen.passed, 0.0, sqrt(seen.area / PI), PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u);
 }

@@ -119,7 +119,7 @@ vec3 found_world(uint flags, uint depth, vec3 direction) {
     if ((camera_ray_kind(flags) & iteration.world_visibility & RAYS_WITH_VISIBILITY) == 0u
         || (gathered && bounces_of(depth) > iteration.world_bounces + 1u))
         return vec3(0.0);
-    return world_radiance(direction, (flags & PATH_STRAIGHT) != 0u && !gathered);
+    return world_radiance(direction, (flags & PATH_CAMERA_TRANSPARENT) != 0u && !gathered);
 }
 
 // What shines at the end of a gathering ray is direct light where the ray began, or a caustic there, which is left to
@@ -140,7 +140,7 @@ void end_gathering_ray(uint index, CameraPath path, vec3 world, EnvironmentView 
 
 // Radiance and alpha of what lies behind everything. background: no light object was passed.
 vec4 seen_environment(CameraPath path, vec3 world, EnvironmentView view, bool background) {
-    if ((path.flags & PATH_STRAIGHT) != 0u && background && iteration.film_transparent != 0u)
+    if ((path.flags & PATH_CAMERA_TRANSPARENT) != 0u && background && iteration.film_transparent != 0u)
         return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return vec4(path.throughput * world * environment_weight(path, view), 0.0);
 }
@@ -163,7 +163,7 @@ vec4 seen_surface(CameraPath path, ScatterPoint from, Closure closure) {
     bool is_left = from.gathers && (iteration.gathers_lights == 0u || traits >> EMITTER_LINK_SHIFT != 0u);
     if (largest(closure.emission) > 0.0 && path_sees_lights(path, iteration.next_event) && !is_found && !is_left)
         seen.rgb = path.throughput * closure.emission * emission_weight(from, closure.triangle);
-    if ((path.flags & PATH_STRAIGHT) != 0u)
+    if ((path.flags & PATH_CAMERA_TRANSPARENT) != 0u)
         seen.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return seen;
 }
@@ -246,12 +246,12 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     bool lights_found = iteration.next_event != 0u && !sampled.transmitted
                         && looks_for_reflected_lights(lobe, shares, all.total, chosen, viewer,
                                                       min(SMOOTHEST_LIT, iteration.specular_alpha));
-    event.flags =
-        (path.flags
-         & ~(PATH_STRAIGHT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH))
-        | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
-        | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
-        | dispersed_flag(closure, lobe, sampled.transmitted);
+    event.flags = (path.flags
+                   & ~(PATH_CAMERA_TRANSPARENT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND
+                       | PATH_SEEN_THROUGH))
+                  | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
+                  | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
+                  | dispersed_flag(closure, lobe, sampled.transmitted);
     return event;
 }
 
@@ -289,7 +289,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all
     u *= total / survival;
     bool sets_out = u < gathering, gathered = (path.flags & PATH_GATHERED) != 0u;
     if (sets_out) {
-        path.flags = (path.flags & ~PATH_STRAIGHT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
+        path.flags = (path.flags & ~PATH_CAMERA_TRANSPARENT) | PATH_GATHERED | (gathered ? PATH_GATHERED_AGAIN : 0u);
     } else u -= gathering;
     vec4 shares = sets_out ? all.stored : all.specular;
     Event event;
@@ -374,7 +374,7 @@ void main() {
     vec4 u_lobe = scrambled_sobol4(iteration.number - 1u, choices).zxyw;
     float u_importon = scrambled_sobol(iteration.number - 1u, pcg4d(choices)).x;
     uint bounces = bounces_of(path.depth);
-    bool is_seen = (path.flags & PATH_STRAIGHT) != 0u;
+    bool is_seen = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u;
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathers = iteration.final_gather != 0u && bounces < iteration.camera_bounces
                    && path_gathers(path.flags, length_to_gather_by(closure), iteration.gathers_again_below);

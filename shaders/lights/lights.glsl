@@ -14,6 +14,7 @@ readonly buffer Triangles;
 #include "lights/emitter_traits.glsl"
 
 #include <Lights>
+#include <LightFlags>
 
 // Directions from which the photons of the world leave: those of its light through portals have a table of their own.
 DirectionTable directions_of(Light light) {

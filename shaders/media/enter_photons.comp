@@ -17,6 +17,7 @@ readonly buffer MediumBoxes;
 readonly buffer Rays;
 #include "lights/light_table.glsl"
 #include <Lights>
+#include <LightFlags>
 buffer PhotonPaths;
 readonly buffer Materials;
 #include "media/crossings.glsl"

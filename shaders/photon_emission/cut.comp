@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/living_paths.glsl"
 #include "lights/light_table.glsl"
 #include <Lights>
+#include <LightFlags>
 #include TRAVERSAL
 buffer Rays;
 readonly buffer Hits;

@@ -32,7 +32,7 @@ readonly buffer PathFlags { uint path_words[]; };
 #include "materials/generated.glsl"
 
 #include <PathKinds>
-const uint LOOKING_BACK = 64u;  // segments so far apart may have the same random numbers
+#include <AdjointSegments>
 
 uint path_flags(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA)
@@ -243,7 +243,7 @@ void main() {
 #endif
     uint flags = path_flags(index);
     Surface surface = surface_at(ray, hit, flags, index);
-    uint variant = parameters.has_adjoint_queries != 0u ? LOOKING_BACK : 0u;
+    uint variant = parameters.has_adjoint_queries != 0u ? ADJOINT_SEGMENT_OFFSET : 0u;
     RandomSequence random =
         random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment + variant, index);
     ClosureBuilder builder = builder_at(surface, next_random(random));
@@ -264,8 +264,8 @@ void main() {
 #endif
 #ifdef MATERIAL_AOVS
     // As in Cycles: of what is seen up to the first surface that the passes are of.
-    bool seen_first =
-        parameters.path_kind == PATH_OF_CAMERA && (flags & (PATH_STRAIGHT | PATH_SURFACE_FOUND)) == PATH_STRAIGHT;
+    bool seen_first = parameters.path_kind == PATH_OF_CAMERA
+                      && (flags & (PATH_CAMERA_TRANSPARENT | PATH_SURFACE_FOUND)) == PATH_CAMERA_TRANSPARENT;
     if (seen_first && !unseen) evaluate_aovs(surface, materials[material].first_constant, index);
 #endif
 #ifdef NODE_RAYS

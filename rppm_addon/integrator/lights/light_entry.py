@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ...scene.lights import Light, LightKind
-from .light_records import LIGHT, LIGHT_SHADOWLESS, LIGHT_SOFT, LightShape
+from .light_records import LIGHT, LightFlag, LightShape
 
 
 def spot_share(cosine_cone: float, blend: float) -> float:
@@ -50,7 +50,7 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
     entry["radius"] = max(light.radius, 0.0)
     soft = light.soft_falloff and light.radius > 0 and light.kind in (LightKind.POINT, LightKind.SPOT)
     entry["flags"] = (
-        int(light.visibility) | (LIGHT_SOFT if soft else 0) | (0 if light.casts_shadow else LIGHT_SHADOWLESS)
+        int(light.visibility) | (LightFlag.SOFT if soft else 0) | (0 if light.casts_shadow else LightFlag.SHADOWLESS)
     )
     entry["max_bounces"] = light.max_bounces
     if light.kind is LightKind.POINT:

@@ -37,22 +37,23 @@ class EmitterTrait(enum.IntFlag):
 
 EMITTER_LINK_SHIFT = 8
 Constants("EmitterTraits", EMITTER=EmitterTrait, EMITTER_LINK_SHIFT=EMITTER_LINK_SHIFT)
-LIGHT_SOFT = 32
-"""Of a light's flags, behind the bits of RayVisibility: a disk that faces each point it lights."""
-LIGHT_SHADOWLESS = 64
-"""Likewise: no shadows are cast in its light."""
-LIGHT_THROUGH_PORTALS = 128
-"""Likewise: photons of the world that leave through portals. It is chosen for nothing else."""
-LIGHT_HOLDS_SURFACES = 256
-"""Likewise: there are surfaces within its radius, which a sphere lights from within and which hide parts of a disk."""
-Constants(
-    "Lights",
-    LIGHT=LightShape,
-    LIGHT_SOFT=LIGHT_SOFT,
-    LIGHT_SHADOWLESS=LIGHT_SHADOWLESS,
-    LIGHT_THROUGH_PORTALS=LIGHT_THROUGH_PORTALS,
-    LIGHT_HOLDS_SURFACES=LIGHT_HOLDS_SURFACES,
-)
+
+
+class LightFlag(enum.IntFlag):
+    """Flags of a light, above the bits of RayVisibility."""
+
+    SOFT = 32
+    """The light is a disk that faces each point that it lights."""
+    SHADOWLESS = 64
+    """No shadows are cast in its light."""
+    THROUGH_PORTALS = 128
+    """The light is that of the world's photons which leave through portals. It is chosen for nothing else."""
+    HOLDS_SURFACES = 256
+    """Surfaces lie within the light's radius. A sphere lights them from within, and they hide parts of a disk."""
+
+
+Constants("Lights", LIGHT=LightShape)
+Constants("LightFlags", LIGHT=LightFlag)
 LIGHT = Record(
     "Light",
     position="vec3",

@@ -26,16 +26,7 @@ from .guide import Guide
 from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
-from .light_records import (
-    LIGHT,
-    LIGHT_HOLDS_SURFACES,
-    LIGHT_LINK,
-    LIGHT_NODE,
-    LIGHT_SOFT,
-    LIGHT_THROUGH_PORTALS,
-    NO_LIGHT_GROUP,
-    LightShape,
-)
+from .light_records import LIGHT, LIGHT_LINK, LIGHT_NODE, NO_LIGHT_GROUP, LightFlag, LightShape
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
 from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
 from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
@@ -223,7 +214,7 @@ class Lights(BufferSet):
             if is_portal(light):
                 continue
             entry, power = light_entry(light, radius)
-            entry["flags"] |= LIGHT_HOLDS_SURFACES * holds_surfaces(light, scene, geometry)
+            entry["flags"] |= LightFlag.HOLDS_SURFACES * holds_surfaces(light, scene, geometry)
             entry["link"] = links.of_light(light)
             nodes = self.light_maps.nodes.get(index)
             if nodes is not None:
@@ -255,7 +246,7 @@ class Lights(BufferSet):
         if self._portals.power > 0.0:
             # The same light as the world's, which all but its photons take by that one: so it has no power.
             through = entry.copy()
-            through["flags"] |= LIGHT_THROUGH_PORTALS
+            through["flags"] |= LightFlag.THROUGH_PORTALS
             add(ENVIRONMENT, through, np.full(3, self._portals.power), group=scene.world.light_group)
             powers[-1] = 0.0
         if not entries:
@@ -275,9 +266,9 @@ class Lights(BufferSet):
         table["selection_end"] = np.cumsum(selection)
         table["selection_end"][-1] = 1.0
         self.has_falloff = bool(
-            (table["flags"] & LIGHT_SOFT).any() or table["falloff"].any() or table["smoothing"].any()
+            (table["flags"] & LightFlag.SOFT).any() or table["falloff"].any() or table["smoothing"].any()
         )
-        cut = LIGHT_SOFT | LIGHT_HOLDS_SURFACES
+        cut = LightFlag.SOFT | LightFlag.HOLDS_SURFACES
         self.are_cut = bool(((table["flags"] & cut) == cut).any())
         self.table, self._photons, self._most_photons = table, photons, scene.photon_count
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):

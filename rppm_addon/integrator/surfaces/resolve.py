@@ -83,8 +83,9 @@ _RANGE_SIZE = 8
 Constants("Ranges", RANGE_SIZE=_RANGE_SIZE)
 Constants("PathKinds", PATH_OF=_PathKind)
 _STAGE = "resolve/resolve.comp"
-_LOOKING_BACK = 64
-"""Tells the rays of nodes that are seen from where photons go from those of all segments."""
+ADJOINT_SEGMENT_OFFSET = 64
+"""Number that is added to a segment for random numbers of hits that are seen from where photons go."""
+Constants("AdjointSegments", ADJOINT_SEGMENT_OFFSET=ADJOINT_SEGMENT_OFFSET)
 
 
 def _inserts(text: str) -> dict[str, str]:
@@ -272,7 +273,7 @@ class Resolve(BufferSet):
         counts = self._ray_counts[parameters["program"]]
         told = {"ray_stride": self._ray_stride, "ray_levels": counts.levels}
         traced = {name: parameters[name] for name in ("seed", "iteration", "program")}
-        traced["segment"] = parameters["segment"] + (_LOOKING_BACK if parameters["has_adjoint_queries"] else 0)
+        traced["segment"] = parameters["segment"] + (ADJOINT_SEGMENT_OFFSET if parameters["has_adjoint_queries"] else 0)
         for level in range(counts.levels):
             told["ray_level"] = level
             program.run_indirect(order, arguments, buffers, {**parameters, **told})

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Closure>
+#include <ClosureFlags>
 #include <ClosureLobes>
 #include <Terminators>
 #include <Dispersion>
 #include "common/bsdf/microfacet.glsl"
-
-const uint CLOSURE_BACKFACING = 1u, CLOSURE_SHADOWLESS = 2u, CLOSURE_CATCHES_SHADOWS = 4u,
-           CLOSURE_KEEPS_LIGHT = 8u,  // photons light it, but it sends none on
-    CLOSURE_CROWDED = 16u,            // one part, chosen by chance, stands for others
-    CLOSURE_ABSENT = 32u,             // the path comes straight through as if it were not there
-    CLOSURE_DISPERSES = 64u,          // the indices of its refracting lobes are those of the path's wavelength
-    CLOSURE_SUBSURFACE = 128u;        // of its diffuse part, some goes below the surface
-const uint LOBE_COUNT_SHIFT = 8u;     // where in the flags the number of lobes stands
 
 const ClosureLobe EMPTY_LOBE = ClosureLobe(vec3(0.0), LOBE_NONE, vec3(0.0), 0.0, 1.0, 0u, ISOTROPIC);
 

@@ -15,7 +15,7 @@ from test_guided_photons import emitted_moments
 from test_light_sampling import FOLDER, Iteration
 
 from rppm_addon.integrator.lights import guide, portals
-from rppm_addon.integrator.lights.light_records import LIGHT_THROUGH_PORTALS
+from rppm_addon.integrator.lights.light_records import LightFlag
 from rppm_addon.integrator.lights.portals import light_through
 from rppm_addon.scene import Light, LightKind, Scene
 
@@ -96,7 +96,7 @@ def test_photons_through_portals_emit_the_same_light(mapper, name, sky):
     plain = emitted_moments(mapper, 8)
     mapper.build(with_portals(name, sky))
     lights = mapper.device_scene.lights
-    assert lights.table["flags"][-1] & LIGHT_THROUGH_PORTALS and lights.table["photon_count"].min() > 1000
+    assert lights.table["flags"][-1] & LightFlag.THROUGH_PORTALS and lights.table["photon_count"].min() > 1000
     generator = np.random.default_rng(3)
     for guided in (False, True):
         if guided:

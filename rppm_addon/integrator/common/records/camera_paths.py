@@ -28,6 +28,34 @@ class PathHistory(enum.IntFlag):
     """One that was not diffuse has scattered it after one that was: Cycles ends it there where Caustics are off."""
 
 
+class CameraPathFlag(enum.IntFlag):
+    """Flags of a camera path. DIFFUSE, TRANSMITTED and SINGULAR describe the last event that was not transparent."""
+
+    CAMERA_TRANSPARENT = 1
+    """The path has met nothing but transparent surfaces since the camera."""
+    SURFACE_FOUND = 2
+    """The passes have the path's first surface."""
+    GATHERED = 4
+    """The path has left a surface that stores photons, for light that others send there."""
+    DIFFUSE = 8
+    """The event was diffuse."""
+    TRANSMITTED = 16
+    """The event was a transmission."""
+    SINGULAR = 32
+    """The event had a single direction."""
+    CAUSTIC = 64
+    """Since GATHERED, something has scattered the path or taken a share of direct light."""
+    GATHERED_AGAIN = 128
+    """The path has left a second surface that stores photons."""
+    DENOISING_DATA_FOUND = 256
+    """The passes of denoisers have the path's surface."""
+    LIGHTS_FOUND = 512
+    """A shadow ray has looked for the light objects and emissive triangles that the path leads to."""
+    SEEN_THROUGH = 2048
+    """Since the event, the path has passed surfaces that stop no shadow rays from there."""
+
+
+Constants("CameraPathFlags", PATH=CameraPathFlag)
 Constants("PathHistory", SCATTER=Scatter, HISTORY=PathHistory)
 CAMERA_PATH = Record(
     "CameraPath",

@@ -62,6 +62,32 @@ class MicrofacetKind(enum.IntEnum):
 Constants("MicrofacetKinds", LOBE=MicrofacetKind)
 Constants("HairLobes", HAIR_ON_STRAND=1)
 """In ``anisotropy`` of principled hair: the lowest bit, which is no part of an angle."""
+
+
+class ClosureFlag(enum.IntFlag):
+    """Flags of a closure."""
+
+    BACKFACING = 1
+    """The ray came to the back of the surface."""
+    SHADOWLESS = 2
+    """The surface stops no shadow rays."""
+    CATCHES_SHADOWS = 4
+    """The surface is a shadow catcher."""
+    KEEPS_LIGHT = 8
+    """Photons light the surface, but it sends none on."""
+    CROWDED = 16
+    """One part of the closure, chosen by chance, stands for others."""
+    ABSENT = 32
+    """The path passes straight through, as if the surface were not there."""
+    DISPERSES = 64
+    """The indices of the refracting lobes are those of the path's wavelength."""
+    SUBSURFACE = 128
+    """Some of the diffuse part goes below the surface."""
+
+
+LOBE_COUNT_SHIFT = 8
+"""Place of the number of lobes among the bits of a closure's flags."""
+Constants("ClosureFlags", CLOSURE=ClosureFlag, LOBE_COUNT_SHIFT=LOBE_COUNT_SHIFT)
 CLOSURE_LOBE = Record(
     "ClosureLobe",
     weight="vec3",
