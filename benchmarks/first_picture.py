@@ -30,7 +30,7 @@ from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.scene import Scene
 from rppm_addon.session.process.known_programs import KnownPrograms
 from rppm_addon.session.process.rendering import Rendering
-from rppm_addon.session.process.viewing import Viewing
+from rppm_addon.session.process.viewport_renderer import ViewportRenderer
 
 from . import ROOT
 
@@ -61,7 +61,7 @@ def look(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
         if kind == "frame":
             found.add(content["progress"] > 0.0)
 
-    viewing = Viewing(context, library, Denoiser([]), take, KnownPrograms())
+    viewing = ViewportRenderer(context, library, Denoiser([]), take, KnownPrograms())
     found = Found()
     viewing.show(scene, 1, False)
     while found.true_light is None:

@@ -34,7 +34,7 @@ from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 from rppm_addon.session.process.known_programs import KnownPrograms
-from rppm_addon.session.process.viewing import Viewing, shown_picture
+from rppm_addon.session.process.viewport_renderer import ViewportRenderer, shown_picture
 
 from . import ROOT
 from .machine import Clock, describe
@@ -90,8 +90,8 @@ class Window:
         """When, of which view, and what."""
         self.viewing = self._open()
 
-    def _open(self) -> Viewing:
-        return Viewing(self._context, self._library, Denoiser([]), self._take, self._programs)
+    def _open(self) -> ViewportRenderer:
+        return ViewportRenderer(self._context, self._library, Denoiser([]), self._take, self._programs)
 
     def _take(self, kind: str, **content: object) -> None:
         if kind == "frame":

@@ -8,7 +8,7 @@ from . import (
     background,
     broken_frames,
     engine,
-    following,
+    frame_reuse,
     operators,
     panels,
     preferences,
@@ -34,7 +34,7 @@ def register() -> None:
     preferences.register()
     renderer_process.register()
     preparing.register()
-    following.register()
+    frame_reuse.register()
     kept_images.register()
     broken_frames.register()
 
@@ -43,7 +43,7 @@ def unregister() -> None:
     """Undo register, end the renderer process and release the graphics device."""
     broken_frames.unregister()
     kept_images.unregister()
-    following.unregister()
+    frame_reuse.unregister()
     preparing.unregister()
     renderer_process.unregister()
     preferences.unregister()

@@ -14,7 +14,7 @@ from ..session.render_job import RenderJob
 from ..session.results import Progress
 from .export import BakePixels, ExportStopped, export_baked_scene
 from .final import render_scene, report_late_warnings, report_warnings, status_text
-from .following import follow
+from .frame_reuse import reuse_previous_frame
 
 logger = logging.getLogger(__name__)
 
@@ -61,7 +61,7 @@ def _bake(
     scene = export_baked_scene(depsgraph, engine, baked, bake_pass, pixels)
     told = list(scene.warnings)
     report_warnings(engine, told)
-    scene = follow(scene)
+    scene = reuse_previous_frame(scene)
     engine.update_stats("", "Preparing the graphics device")
     result = render_scene(engine, scene, _BakeJob(engine, scene, baked.name))
     report_late_warnings(engine, result, scene, told)

@@ -16,14 +16,14 @@ from ..scene import Scene, cryptomatte
 from ..scene.errors import RppmError, SceneError, unforeseen
 from ..scene.passes import COMBINED
 from ..scene.quantities import clock_text, count_text, noise_text
+from ..session.checkpoint_writer import CheckpointWriter, continued_still
 from ..session.observers import RenderObserver, current_observer
 from ..session.process.sessions import SessionKind
 from ..session.render_job import RenderJob
-from ..session.still_keeper import StillKeeper, continued_still
 from . import background, broken_frames, renderer_process, renderer_thread
 from .export import ExportStopped, Eye, FrameExporter, export_scene, is_blurred, views_of, wants_neighbors
 from .export.camera.camera import frame_size
-from .following import follow
+from .frame_reuse import reuse_previous_frame
 from .reports import RenderKind, RenderReport, record, record_error
 
 if TYPE_CHECKING:
@@ -123,11 +123,11 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     if not depsgraph.scene.render.use_persistent_data or looks_around:
         # Going to other frames, such a render takes in what Blender would tell the next one of.
         engine.exporter = None
-        return follow(export_scene(depsgraph, engine, observer.should_stop))
+        return reuse_previous_frame(export_scene(depsgraph, engine, observer.should_stop))
     # Blender keeps engine and depsgraph, and tells what has changed.
     if getattr(engine, "exporter", None) is None:
         engine.exporter = FrameExporter()
-    return follow(
+    return reuse_previous_frame(
         engine.exporter.export(
             depsgraph,
             lambda: engine.test_break() or observer.should_stop(),
@@ -243,7 +243,7 @@ class _FinalJob(RenderJob):
         self._names = ", ".join(filter(None, (source.scene.name, view.name.layer, view.name.view)))
         self._observer = observer
         self.checkpoint = checkpoint
-        self._keeper: StillKeeper | None = None
+        self._keeper: CheckpointWriter | None = None
         self._peak_bytes = 0
         self._result = None
         self._shown_at = -1e9

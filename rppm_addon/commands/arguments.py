@@ -8,7 +8,7 @@ from typing import Any, NoReturn, TypeAlias
 
 from ..scene.errors import SettingsError
 from ..scene.settings import CUBEMAP_COSTS
-from ..session.still_keeper import MINUTES
+from ..session.checkpoint_writer import MINUTES
 from .frame_numbers import frame_numbers
 from .setting_options import add_setting, add_settings
 

@@ -15,13 +15,13 @@ from ..pictures import FilePicture, PictureName, refuse_spoiled, standard_view, 
 from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
 from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
+from ..session.checkpoint_writer import picture_of, pictures_of, refuse_differences
 from ..session.continuation import Pause
 from ..session.denoised_pictures import finished_frame
 from ..session.frame_passes import frame_passes
 from ..session.merged_passes import MergedPasses
 from ..session.renderer import exposed
 from ..session.results import Frame
-from ..session.still_keeper import picture_of, pictures_of, refuse_differences
 from .picture_files import write_png
 from .picture_set import described, metadata_of, path_of_picture
 from .recorder import picture_metadata, write_frame

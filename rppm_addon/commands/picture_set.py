@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from ..pictures import FilePicture, PictureName, refuse_spoiled, write_multilayer_exr
 from ..scene import Scene
+from ..session.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
 from ..session.observers import RenderObserver
-from ..session.still_keeper import StillKeeper, attributes_of, placement_of
 from .progress_bar import PartBar, ProgressBar
 from .recorder import RenderRecorder, RenderRequest
 
@@ -195,7 +195,7 @@ def recorded_pictures(
     request: RenderRequest,
     bar: ProgressBar | PartBar,
     should_stop: Callable[[], bool],
-    keeper: StillKeeper | None = None,
+    keeper: CheckpointWriter | None = None,
 ) -> PictureSet:
     """The pictures of a frame of a .blend file. keeper: of the first one; the others have their own, beside it."""
 
@@ -211,8 +211,8 @@ def recorded_pictures(
     return PictureSet(request.outputs, make)
 
 
-def _keeper_of(keeper: StillKeeper, name: PictureName, names: Sequence[PictureName]) -> StillKeeper:
-    """The keeper of one of several pictures. Raises as StillKeeper."""
+def _keeper_of(keeper: CheckpointWriter, name: PictureName, names: Sequence[PictureName]) -> CheckpointWriter:
+    """The keeper of one of several pictures. Raises as CheckpointWriter."""
     request = keeper.request
     which = {"picture": list(dataclasses.astuple(name)), "pictures": [list(dataclasses.astuple(n)) for n in names]}
     if name == names[0]:
@@ -220,4 +220,4 @@ def _keeper_of(keeper: StillKeeper, name: PictureName, names: Sequence[PictureNa
         return keeper
     checkpoint, part = (path and path_of_picture(path, name, names) for path in (request.checkpoint, request.part))
     source = {**request.source, **which}
-    return StillKeeper(dataclasses.replace(request, checkpoint=checkpoint, part=part, source=source))
+    return CheckpointWriter(dataclasses.replace(request, checkpoint=checkpoint, part=part, source=source))

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from ..pictures import Placement, refuse_spoiled, standard_view, write_exr
 from ..scene import RenderSettings, Scene
 from ..scene.quantities import clock_text, count_text, noise_text
+from ..session.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
 from ..session.observers import RenderObserver
-from ..session.still_keeper import StillKeeper, attributes_of, placement_of
 from .picture_files import write_png
 from .progress_bar import PartBar, ProgressBar
 
@@ -55,7 +55,7 @@ class RenderRecorder(RenderObserver):
         bar: ProgressBar | PartBar,
         should_stop: Callable[[], bool],
         write_png_file: bool,
-        keeper: StillKeeper | None = None,
+        keeper: CheckpointWriter | None = None,
     ) -> None:
         self.request = request
         self.result: RenderResult | None = None

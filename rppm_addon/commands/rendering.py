@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..pictures import make_folder
 from ..scene import RenderSettings
 from ..scene.errors import SettingsError
-from ..session.still_keeper import CheckpointRequest, StillKeeper
+from ..session.checkpoint_writer import CheckpointRequest, CheckpointWriter
 from .frame_numbers import check_places
 from .interruption import Interruption
 from .options import (
@@ -125,7 +125,7 @@ def _render_frames(
 
 def _still_keeper(
     options: argparse.Namespace, settings: dict[str, object], source: dict[str, object]
-) -> StillKeeper | None:
+) -> CheckpointWriter | None:
     """Who keeps the still, if it is to be kept or rendered in part; the range's length enters the settings, and that
     nothing else ends the render."""
     if options.samples_range is None and options.checkpoint is None and not options.resume:
@@ -142,7 +142,7 @@ def _still_keeper(
     elif options.checkpoint in options.output:
         raise SettingsError(f"--checkpoint and -o both name {options.checkpoint}; give the checkpoint another name")
     request = CheckpointRequest(options.checkpoint, options.checkpoint_minutes, options.resume, part, first, source)
-    keeper = StillKeeper(request)
+    keeper = CheckpointWriter(request)
     if keeper.starts_over:
         sys.stderr.write(f"rppm: {options.checkpoint} is not there yet: the render starts from the beginning\n")
     return keeper

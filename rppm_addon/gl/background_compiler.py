@@ -68,7 +68,7 @@ class EmptyDispatch:
             self._no_groups.release()
 
 
-def is_of_use(context: Context, cache: BinaryCache) -> bool:
+def can_compile_ahead(context: Context, cache: BinaryCache) -> bool:
     """Whether the renderer's context can have what another one has compiled, and there is a core to spare."""
     kept = os.environ.get("MESA_SHADER_CACHE_DISABLE", "").lower() not in {"1", "true", "yes", "y", "t"}
     return (kept if context.is_software else cache.available) and usable_cores() > 1

@@ -15,7 +15,7 @@ from typing import Any
 import moderngl
 
 from ..scene.errors import DeviceError
-from .background_compiler import BackgroundCompiler, CompilerContext, EmptyDispatch, is_of_use
+from .background_compiler import BackgroundCompiler, CompilerContext, EmptyDispatch, can_compile_ahead
 from .binary_cache import BinaryCache
 from .bindings import UNIFORM_BINDINGS
 from .buffers import BufferRange
@@ -276,7 +276,7 @@ class ProgramMaker:
         self._linker = Linker(context)
         self.compiler: BackgroundCompiler | None = None
         """Where there is a core to spare."""
-        if is_of_use(context, self.cache):
+        if can_compile_ahead(context, self.cache):
             self.compiler = BackgroundCompiler(lambda: CompilerContext(context.another()))
             self._dispatch = EmptyDispatch(context)
 

@@ -42,7 +42,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             listeners.paths_scattered(events, segment)
             stages.coverage.probe(context, importons, band, segment)
             raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
-            estimator.splat(importons.taking(context, segment, raster), context.timers)  # Direct-, IndirectSplatting
+            targets = importons.splat_targets(context, segment, raster)
+            estimator.splat(targets, context.timers)  # Direct-, IndirectSplatting
             yield
         if iteration.needs_radiance:
             stages.final_gather.share(context, estimator.sums, importons.radiances, band, radii)

@@ -9,8 +9,8 @@ import numpy as np
 from ..scene.meshes import RayVisibility
 from ..scene.settings import DirectLight
 from .common.iteration import Iteration
-from .common.known import known
 from .common.photon_counts import NoiseSamples, NoiseVariances, PhotonCounts, camera_cost, photon_cost
+from .common.require import require
 from .density_estimation.radii import (
     Radii,
     expected_photons,
@@ -143,7 +143,7 @@ class Learning:
     ) -> None:
         """Choose how many photons the iterations after one that is learned from have; ``vertices``: of its camera
         paths."""
-        found = NoiseSamples.of(np.concatenate([known(band.noise_samples) for band in findings]))
+        found = NoiseSamples.of(np.concatenate([require(band.noise_samples) for band in findings]))
         if self.rest is None:
             self.photon_noise = self.photon_noise.with_first(found)
         else:
@@ -164,6 +164,6 @@ class Learning:
             # Fewer photons make noise, which is weighed, and not wider disks, of which nobody would know the bias.
             expected = self._expected * min(self.photon_counts.of(number + 1) / self._photons_of_disks, 1.0)
             # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, expected, known(self.diffused_photons_found))
+            fitted = fitted_wide_radius(shrunk, expected, require(self.diffused_photons_found))
             self.wide_radius = min(fitted / math.sqrt(min(gain, 4.0)), self.widest_radius)
             self.diffused_photons_found = None

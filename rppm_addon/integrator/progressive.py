@@ -16,7 +16,7 @@ from ..scene.settings import DensityEstimation, FirstPhotonHits
 from .acceleration.acceleration_structure import AccelerationStructure
 from .algorithm import iterate, store_photons, trace_photons
 from .common.iteration import LEARNING_ITERATIONS, Iteration, learns_after
-from .common.known import known
+from .common.require import require
 from .common.viewport_demands import NO_DEMANDS, ViewportDemands
 from .deep_cubemap.deep_cubemap import DeepCubemap
 from .deep_cubemap.inspection import inspect_deep_cubemap
@@ -140,17 +140,17 @@ class ProgressivePhotonMapper:
     @property
     def scene(self) -> Scene:
         """With a shutter, as it is at the iteration's moment."""
-        return known(self.device_scene.scene)
+        return require(self.device_scene.scene)
 
     @property
     def stages(self) -> StageSet:
         """Those of the iterations, once a scene was built."""
-        return known(self._stages)
+        return require(self._stages)
 
     @property
     def learning(self) -> Learning:
         """What the iterations learn, once a scene was built."""
-        return known(self._learning)
+        return require(self._learning)
 
     @property
     def film(self) -> Film:

@@ -13,9 +13,9 @@ from numpy.lib import format as npy
 
 from .documents import decode, encode
 from .errors import SceneError, SettingsError
-from .gate import check_scene
 from .quantities import bytes_text
 from .scene import Scene
+from .validation import check_scene
 from .whole_files import renamed_when_whole
 
 FORMAT = 4

@@ -27,8 +27,8 @@ from ..pictures import Placement, renamed_when_whole
 from ..scene.declared import declared
 from ..scene.errors import CheckpointError
 from ..scene.fingerprint import settings_of_plain
-from ..scene.gate import check_record
 from ..scene.passes import RenderPass
+from ..scene.validation import check_record
 from ..scene.whole_files import is_no_file
 from .continuation import Pause
 

@@ -51,7 +51,7 @@ class Continuation:
     """That were handed out before."""
 
 
-class GoingOn:
+class DeviceLossRecovery:
     """A render that goes on in another context where the device is lost."""
 
     def __init__(self, continuation: Continuation | None) -> None:

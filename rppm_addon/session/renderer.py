@@ -16,10 +16,10 @@ from ..integrator.memory import Memory
 from ..integrator.progressive import ProgressivePhotonMapper
 from ..integrator.stages.film import Film, exposed
 from ..scene.errors import DeviceLostError
-from ..scene.gate import check_scene
 from ..scene.passes import DEEP_CUBEMAP
 from ..scene.scene import Scene
-from .continuation import Continuation, GoingOn, Pause
+from ..scene.validation import check_scene
+from .continuation import Continuation, DeviceLossRecovery, Pause
 from .denoised_pictures import finished_frame, finished_result, wanted_frame
 from .frame_passes import frame_passes
 from .noise_threshold import NoiseThreshold
@@ -328,7 +328,7 @@ class Renderer:
         Where the device is lost the render goes on in another context, after the last iteration that was safeguarded.
         Raises the errors of scene/errors.py.
         """
-        going_on = GoingOn(continuation)
+        going_on = DeviceLossRecovery(continuation)
 
         def hand_out(seconds: float, frame: Frame) -> None:
             going_on.continuation.snapshots_taken += 1

@@ -60,7 +60,7 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
 float direct_share(uint photon_number, float radius) {
     if (!(iteration.direct_world_flux > 0.0)) return 1.0;
     PhotonOrigin world = photon_origins[photon_path_of(photons[photon_number].path)];
-    return world_direct_photon_share(world.radiance, world.pdf, iteration.direct_world_flux, radius);
+    return photon_mis_weight(world.radiance, world.pdf, iteration.direct_world_flux, radius);
 }
 
 // The gathering ray finds the rest, unless its path ends before.
@@ -74,7 +74,7 @@ float caustic_share(uint photon_number, uint importon_history, float radius) {
 // What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which it
 // counts at an importon. offset: from importon to photon.
 bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
-    if ((gathers & GATHERS_BY_RAY) != 0u && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
+    if ((gathers & FINAL_GATHER_ORIGIN) != 0u && (photon_flags & PHOTON_INDIRECT) != 0u) return false;
     return dot(offset, offset) < radius * radius;
 }
 
@@ -134,7 +134,7 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     estimate.diffuse = estimate.diffuse * flux * kernel;
     float share = 1.0, disk = disk_radius(ITS.least_radius, ITS.radius);
     if ((flags & PHOTON_DIRECT) != 0u) share = direct_share(photon_number, disk);
-    else if ((ITS.gathers & GATHERS_BY_RAY) != 0u) share = caustic_share(photon_number, ITS.history, disk);
+    else if ((ITS.gathers & FINAL_GATHER_ORIGIN) != 0u) share = caustic_share(photon_number, ITS.history, disk);
     estimate.radiance = radiance * share;
     estimate.diffuse *= share;
     return largest(estimate.radiance) > 0.0;

@@ -9,7 +9,7 @@ float power_heuristic(float pdf, float other_pdf) {
 
 // Whether the newest of several candidates is taken in place of those before, by its weight; weights: the sum with it.
 // u: uniform in [0, 1), before as after (weighted reservoir sampling with one random number).
-bool takes_candidate(float weight, float weights, inout float u) {
+bool reservoir_accept(float weight, float weights, inout float u) {
     u *= weights;
     bool taken = u < weight;
     u = taken ? u / weight : (u - weight) / max(weights - weight, 1e-30);

@@ -14,7 +14,7 @@ const float SHARP_PDF = 10.0;
 
 // Direct light, where photons bring it because rays seldom leave the scene. photon_flux: of the world's, W, as they are
 // of use; pdf: of shadow rays that way, 1/sr.
-float world_direct_photon_share(float radiance, float pdf, float photon_flux, float radius) {
+float photon_mis_weight(float radiance, float pdf, float photon_flux, float radius) {
     float sharpness = pdf / SHARP_PDF;
     return world_photon_share(radiance, photon_flux, radius) / (1.0 + sharpness * sharpness);
 }

@@ -102,7 +102,7 @@ RandomSequence random_of(uint index) {
 
 bool takes_diffused_photons(uint index) {
     return importons[index].radius > 0.0
-           && (importons[index].gathers & (GATHERED_BY_RAY | GATHERS_BY_RAY)) == GATHERED_BY_RAY;
+           && (importons[index].gathers & (FINAL_GATHER_HIT | FINAL_GATHER_ORIGIN)) == FINAL_GATHER_HIT;
 }
 
 void main() {

@@ -8,13 +8,13 @@ layout(local_size_x = 64) in;
 readonly buffer Visibility;
 readonly buffer Contributions;
 buffer Radiances;
-buffer FoundRadiances;
+buffer GatherRadiances;
 
 void main() {
     uint index = living_path();
     if (index == NO_PATH) return;
     vec4 contribution = contributions[index];
     if (visibility[index] == 0u) return;
-    if (contribution.w > 0.0) found_radiances[index].rgb += contribution.rgb;
+    if (contribution.w > 0.0) gather_radiances[index].rgb += contribution.rgb;
     else radiances[index].rgb += contribution.rgb;
 }

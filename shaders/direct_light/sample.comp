@@ -41,7 +41,7 @@ struct Parts {
 
 // The alpha above which lobes are evaluated toward lights.
 float smoothest_lit(bool gathered) {
-    return gathered ? iteration.specular_alpha : min(SMOOTHEST_LIT, iteration.specular_alpha);
+    return gathered ? iteration.specular_alpha : min(MIN_MIS_ALPHA, iteration.specular_alpha);
 }
 
 // Whether a lobe is. What fibers scatter after a gathering ray is left to photons, as of all that store none.
@@ -62,8 +62,9 @@ bool can_be_lit(uint index, Closure closure, bool gathered) {
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included. is_shared: whether gathering rays find the light. by_rays: what photons leave to rays,
 // of the parts that store them.
-vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares shares, bool gathered, vec3 wo, vec3 wi,
-                      bool front, uint visibility, bool is_shared, float light_pdf, float by_rays, out Parts parts) {
+vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelection shares, bool gathered, vec3 wo,
+                      vec3 wi, bool front, uint visibility, bool is_shared, float light_pdf, float by_rays,
+                      out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
     if (is_shared) {
@@ -80,7 +81,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, PathShares s
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, iteration.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
-        if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > SMOOTHEST_LIT)))
+        if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > MIN_MIS_ALPHA)))
             weight *=
                 power_heuristic(light_pdf, part_probability((specular ? shares.specular : shares.stored)[1 + k], shares)
                                                * scattered.pdf);
@@ -118,14 +119,14 @@ struct Candidates {
 void add_candidate(inout Candidates candidates, float weight, Arriving arriving) {
     if (!(weight > 0.0)) return;
     candidates.weights += weight;
-    if (!takes_candidate(weight, candidates.weights, candidates.u)) return;
+    if (!reservoir_accept(weight, candidates.weights, candidates.u)) return;
     candidates.chosen = arriving;
     candidates.chosen.radiance /= weight;
 }
 
 // Of light objects and emissive triangles, where smooth lobes that reflect little reflect them. A path would go there
 // as seldom.
-Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, PathShares shares, vec3 wo, uint flags,
+Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSelection shares, vec3 wo, uint flags,
                             uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
@@ -181,7 +182,8 @@ float left_to_rays(vec3 point, vec3 direction, float radius) {
 
 // Of a light that is chosen by what it may give at the point.
 Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure closure, vec3 throughput,
-                             PathShares shares, vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
+                             LobeSelection shares, vec3 wo, bool gathered, bool gathers, uvec4 choices,
+                             out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     // Of the light, then of a light deep in the tree, and of the point on the light: even together.
@@ -251,8 +253,8 @@ void main() {
     fiber_seed = choices.w + 2654435769u * parameters.light_sample;
 #endif
     vec3 viewer = -ray.direction;
-    PathShares shares = path_shares(index, closure, throughput, viewer, iteration.specular_alpha, gathers,
-                                    (flags & PATH_CAMERA_TRANSPARENT) != 0u);
+    LobeSelection shares = path_shares(index, closure, throughput, viewer, iteration.specular_alpha, gathers,
+                                       (flags & PATH_CAMERA_TRANSPARENT) != 0u);
     Parts parts;  // shares of it
     Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered), closure,
                                             throughput, shares, viewer, gathered, gathers, choices, parts);
@@ -265,7 +267,7 @@ void main() {
     if (reflected_weight > 0.0) {
         float total = weight + reflected_weight;
         float u = scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).y;
-        takes_reflected = takes_candidate(reflected_weight, total, u);
+        takes_reflected = reservoir_accept(reflected_weight, total, u);
         if (takes_reflected) {
             arriving = reflected;
             parts = Parts(vec3(1.0), vec3(0.0));

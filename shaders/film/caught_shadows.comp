@@ -14,7 +14,7 @@ uniform Parameters { PassParameters parameters; };
 readonly buffer Closures;
 readonly buffer Rays;
 readonly buffer CameraPaths;
-readonly buffer LitCatchers;
+readonly buffer CatcherVisibility;
 
 void main() {
     uint index = living_path();
@@ -23,5 +23,5 @@ void main() {
     if (!catches || (camera_paths[index].flags & PATH_CAMERA_TRANSPARENT) == 0u) return;
     vec3 throughput = camera_paths[index].throughput;
     float seen = (throughput.r + throughput.g + throughput.b) / 3.0;
-    add_to_pass(PASS_SHADOW_CATCHER, index, vec3(seen * float(lit_catchers[index]), seen, 0.0));
+    add_to_pass(PASS_SHADOW_CATCHER, index, vec3(seen * float(catcher_visibility[index]), seen, 0.0));
 }

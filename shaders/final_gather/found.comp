@@ -9,12 +9,12 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 uniform Parameters { FoundParameters parameters; };
 #include "splat_sums/read.glsl"
-buffer FoundRadiances;
+buffer GatherRadiances;
 readonly buffer GatheringVertices;
 
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     if (gathering_vertices[index].shared_radius < 0.0) return;
-    found_radiances[index].rgb += read_sum(index, true) * parameters.quantum + gathering_vertices[index].found;
+    gather_radiances[index].rgb += read_sum(index, true) * parameters.quantum + gathering_vertices[index].found;
 }

@@ -18,14 +18,14 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 uniform Parameters { ShareParameters parameters; };
 readonly buffer GatheringVertices;
-readonly buffer FoundRadiances;
+readonly buffer GatherRadiances;
 vec4 place_of(uint index) { return vec4(gathering_vertices[index].position, gathering_vertices[index].shared_radius); }
 uint normal_of(uint index) { return gathering_vertices[index].normal; }
 vec3 weight_of(uint index) { return gathering_vertices[index].weight; }
 uvec4 hit_of(uint index) {
     return uvec4(floatBitsToUint(gathering_vertices[index].hit), gathering_vertices[index].hit_normal);
 }
-vec3 found_by(uint index) { return found_radiances[index].rgb; }
+vec3 found_by(uint index) { return gather_radiances[index].rgb; }
 buffer Radiances;
 
 // How far the normals of neighbors may part, as a cosine, and how far one may lie off the other's tangent plane in

@@ -28,7 +28,7 @@ readonly buffer Closures;
 buffer Rays;
 buffer CameraPaths;
 buffer Importons;
-readonly buffer LitCatchers;
+readonly buffer CatcherVisibility;
 buffer GatheringVertices;
 buffer Radiances;
 readonly buffer Camera;
@@ -61,7 +61,7 @@ void leave_importon(uint index, Closure closure, vec3 throughput, vec3 viewer, v
         float share = shares[1 + k];
         if (!(share > 0.0)) continue;
         total += share;
-        if (takes_candidate(share, total, u)) chosen = k;
+        if (reservoir_accept(share, total, u)) chosen = k;
     }
     ClosureLobe lobe = EMPTY_LOBE;
     if (chosen >= 0) {
@@ -227,7 +227,7 @@ Event straight_event(CameraPath path, Closure closure, vec3 direction, vec4 shar
 
 // u: behind the share of what is no lobe.
 Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, float u, vec2 disk, float u_event,
-                 vec4 shares, PathShares all) {
+                 vec4 shares, LobeSelection all) {
     Event event;
     int chosen = u < shares.y ? 0 : (u < shares.y + shares.z ? 1 : 2);
     event.probability = shares[1 + chosen];
@@ -235,7 +235,7 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     event.normal = lobe_normal(lobe);
     LobeSample sampled = sample_lobe(lobe, event.normal, viewer, disk, u_event, true);
     event.pdf = 0.0;
-    if (iteration.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > SMOOTHEST_LIT)
+    if (iteration.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > MIN_MIS_ALPHA)
         event.pdf = part_probability(event.probability, all) * lobe_pdf(lobe, event.normal, viewer, sampled.direction);
     event.direction = sampled.direction;
     event.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
@@ -245,21 +245,21 @@ Event lobe_event(uint index, CameraPath path, Closure closure, vec3 viewer, floa
     event.scatter = lobe_scatter(lobe.kind, sampled.transmitted);
     bool lights_found = iteration.next_event != 0u && !sampled.transmitted
                         && looks_for_reflected_lights(lobe, shares, all.total, chosen, viewer,
-                                                      min(SMOOTHEST_LIT, iteration.specular_alpha));
+                                                      min(MIN_MIS_ALPHA, iteration.specular_alpha));
     event.flags = (path.flags
                    & ~(PATH_CAMERA_TRANSPARENT | PATH_DIFFUSE | PATH_TRANSMITTED | PATH_SINGULAR | PATH_LIGHTS_FOUND
                        | PATH_SEEN_THROUGH))
                   | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
-                  | (lobe.alpha <= SMOOTHEST_LIT ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
+                  | (lobe.alpha <= MIN_MIS_ALPHA ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
                   | dispersed_flag(closure, lobe, sampled.transmitted);
     return event;
 }
 
 // Behind the last bounce a path only comes through transparent surfaces.
-PathShares limited_shares(PathShares shares, uint bounces, bool is_seen) {
+LobeSelection limited_shares(LobeSelection shares, uint bounces, bool is_seen) {
     float straight = shares.specular.x;
     if (bounces <= iteration.camera_bounces) return shares;
-    return PathShares(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight, path_survival(straight, is_seen));
+    return LobeSelection(vec4(straight, 0.0, 0.0, 0.0), vec4(0.0), straight, path_survival(straight, is_seen));
 }
 
 // What a path remembers of how it goes on.
@@ -278,7 +278,7 @@ void take_event(uint index, inout CameraPath path, Closure closure, Event event,
 const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
 
 // The next ray of a path that survives. choices: numbers for the lobe, a place on its disk, and what the lobe does.
-void go_on(uint index, CameraPath path, Ray ray, Closure closure, PathShares all, bool gathers, float radius,
+void go_on(uint index, CameraPath path, Ray ray, Closure closure, LobeSelection all, bool gathers, float radius,
            float disk, vec4 choices, uint history) {
     vec3 viewer = -ray.direction;
     float gathering = gathers ? sum(all.stored) : 0.0, total = all.total;
@@ -365,7 +365,7 @@ void main() {
         return;
     }
     Closure closure = closures[index];
-    if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(lit_catchers[index]);
+    if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(catcher_visibility[index]);
     radiances[index] += vec4(weight, 1.0) * (seen + seen_surface(path, from, closure));
     float radius = vertex_radius(path, ray.direction, closure), most = caustic_radius_of(index, radius, gathered);
     // A pixel's choices are spread evenly over the iterations: a seldom one comes neither in a row nor never.
@@ -378,7 +378,7 @@ void main() {
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathers = iteration.final_gather != 0u && bounces < iteration.camera_bounces
                    && path_gathers(path.flags, length_to_gather_by(closure), iteration.gathers_again_below);
-    PathShares shares = limited_shares(
+    LobeSelection shares = limited_shares(
         path_shares(index, closure, path.throughput, -ray.direction, iteration.specular_alpha, gathers, is_seen),
         bounces, is_seen);
     if (gathered && (path.flags & (PATH_CAUSTIC | PATH_GATHERED_AGAIN)) == 0u && sum(shares.stored) > 0.0) {
@@ -388,6 +388,6 @@ void main() {
     float least_radius = gathered ? most : radius;
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
                    bounces > iteration.camera_bounces ? 0.0 : most, u_importon,
-                   (gathers ? GATHERS_BY_RAY : 0u) | (gathered ? GATHERED_BY_RAY : 0u), history, path.depth);
+                   (gathers ? FINAL_GATHER_ORIGIN : 0u) | (gathered ? FINAL_GATHER_HIT : 0u), history, path.depth);
     go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe, history);
 }

@@ -12,7 +12,7 @@ uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
 #include "light_groups/read_group_sum.glsl"
 readonly buffer GatheringVertices;
-writeonly buffer FoundRadiances;
+writeonly buffer GatherRadiances;
 
 void main() {
     uint index = invocation_index();
@@ -20,5 +20,5 @@ void main() {
     vec3 found = grouped_light_of(index, parameters.group, true)
                  + read_group_sum(index, parameters.group, true) * parameters.quantum;
     if (parameters.group == iteration.world_group) found += gathering_vertices[index].found;
-    found_radiances[index] = vec4(found, 0.0);
+    gather_radiances[index] = vec4(found, 0.0);
 }

@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightPassParameters>
-#include <GatheredParts>
+#include <GatherParts>
 #include "common/invocation.glsl"
 uniform Parameters { LightPassParameters parameters; };
 #include "light_passes/light_passes.glsl"
@@ -18,8 +18,8 @@ void main() {
     if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
     uint first = first_scatter(departing_history(importons[index].history));
     vec3 light = radiances[index].rgb;
-    if (parameters.part == GATHERED_CAUSTICS) add_to_pass(PASS_CAUSTICS, index, light);
-    else if (parameters.part == GATHERED_ALL) add_scattered_light(first, true, index, light);
+    if (parameters.part == GATHER_PART_CAUSTICS) add_to_pass(PASS_CAUSTICS, index, light);
+    else if (parameters.part == GATHER_PART_ALL) add_scattered_light(first, true, index, light);
     else {
         add_scattered_light(first, false, index, light);
         add_scattered_light(first, true, index, -light);

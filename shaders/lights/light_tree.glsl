@@ -247,7 +247,7 @@ void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, Sc
     float weight = largest(radiance);
     if (!(weight > 0.0)) return;
     passed.weights += weight;
-    if (!takes_candidate(weight, passed.weights, passed.u)) return;
+    if (!reservoir_accept(weight, passed.weights, passed.u)) return;
     passed.chosen = radiance / weight;
     passed.light = number;
     passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;

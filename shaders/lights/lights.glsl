@@ -64,7 +64,7 @@ float world_shadow_ray_pdf(vec3 direction) { return iteration.world_selection * 
 // shadow_ray_pdf: world_shadow_ray_pdf.
 float direct_photon_share(vec3 radiance, float shadow_ray_pdf, float radius) {
     if (!(iteration.direct_world_flux > 0.0)) return 0.0;
-    return world_direct_photon_share(largest(radiance), shadow_ray_pdf, iteration.direct_world_flux, radius);
+    return photon_mis_weight(largest(radiance), shadow_ray_pdf, iteration.direct_world_flux, radius);
 }
 
 // By its selection probability.

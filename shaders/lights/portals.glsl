@@ -15,7 +15,7 @@ float portal_solid_angle(Light portal, vec3 point) {
     return angles.x + angles.y;
 }
 
-// One of the portals by its solid angle; NO_PORTAL where none faces the point. u: as of takes_candidate.
+// One of the portals by its solid angle; NO_PORTAL where none faces the point. u: as of reservoir_accept.
 uint choose_portal(vec3 point, inout float u) {
     uint chosen = NO_PORTAL;
     float total = 0.0;
@@ -23,7 +23,7 @@ uint choose_portal(vec3 point, inout float u) {
         float angle = portal_solid_angle(portal_at(k), point);
         if (!(angle > 0.0)) continue;
         total += angle;
-        if (takes_candidate(angle, total, u)) chosen = k;
+        if (reservoir_accept(angle, total, u)) chosen = k;
     }
     return chosen;
 }

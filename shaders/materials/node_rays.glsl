@@ -5,7 +5,7 @@
 
 #define NODE_RAYS
 #include <NodeRay>
-#include <NodeQuestions>
+#include <NodeRayQueries>
 #include <PathKinds>
 buffer NodeRays;
 
@@ -17,7 +17,7 @@ bool asks_rays() { return parameters.ray_level < parameters.ray_levels; }
 vec3 found_by_rays(uint place, uint level, uint kind, uint samples, vec3 direction, float reach) {
     uint at = parameters.ray_stride * path_of_node_rays + place;
     if (parameters.ray_level == level)
-        node_rays[at] = NodeRay(direction, kind | level << QUESTION_LEVEL_SHIFT | samples << QUESTION_SAMPLES_SHIFT,
-                                vec3(0.0), reach);
+        node_rays[at] =
+            NodeRay(direction, kind | level << QUERY_LEVEL_SHIFT | samples << QUERY_SAMPLES_SHIFT, vec3(0.0), reach);
     return node_rays[at].found;
 }

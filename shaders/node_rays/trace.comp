@@ -24,7 +24,7 @@ readonly buffer HitOrder;
 
 #define TRACES_INSTANCES
 #include TRAVERSAL
-#include <NodeQuestions>
+#include <NodeRayQueries>
 #include <Ranges>
 
 // Of surfaces behind one another, those up to here count for a bevel.
@@ -108,11 +108,11 @@ vec3 bevel_normal(Hit hit, vec3 position, mat3 axes, int axis, float radius, flo
 }
 
 #ifdef RAYCASTS
-bool is_raycast(uint kind) { return kind == QUESTION_RAYCAST || kind == QUESTION_LOCAL_RAYCAST; }
-bool meets_all(uint kind) { return kind == QUESTION_OCCLUSION || kind == QUESTION_RAYCAST; }
+bool is_raycast(uint kind) { return kind == QUERY_RAYCAST || kind == QUERY_LOCAL_RAYCAST; }
+bool meets_all(uint kind) { return kind == QUERY_OCCLUSION || kind == QUERY_RAYCAST; }
 
 Ray cast_ray(NodeRay asked, uint beside, uint triangle) {
-    uint source = (asked.question & QUESTION_FROM_SURFACE) != 0u ? triangle : NO_TRIANGLE;
+    uint source = (asked.query & QUERY_FROM_SURFACE) != 0u ? triangle : NO_TRIANGLE;
     return Ray(node_rays[beside].direction, source, asked.direction, asked.reach);
 }
 
@@ -129,7 +129,7 @@ vec3 keep_cast(uint beside, Hit hit, vec3 direction, uint instance) {
     return dot(geometric, direction) > 0.0 ? -normal : normal;
 }
 #else
-bool meets_all(uint kind) { return kind == QUESTION_OCCLUSION; }
+bool meets_all(uint kind) { return kind == QUERY_OCCLUSION; }
 #endif
 
 void main() {
@@ -144,13 +144,13 @@ void main() {
     for (uint k = 0u; k < parameters.ray_places; ++k) {
         uint at = parameters.ray_stride * index + k;
         NodeRay asked = node_rays[at];
-        uint kind = asked.question & QUESTION_KIND;
-        if (kind == 0u || (asked.question >> QUESTION_LEVEL_SHIFT & QUESTION_LEVEL) != parameters.ray_level) continue;
-        uint samples = asked.question >> QUESTION_SAMPLES_SHIFT;
+        uint kind = asked.query & QUERY_KIND;
+        if (kind == 0u || (asked.query >> QUERY_LEVEL_SHIFT & QUERY_LEVEL) != parameters.ray_level) continue;
+        uint samples = asked.query >> QUERY_SAMPLES_SHIFT;
         uint end = min(parameters.first_sample + parameters.sample_count, samples);
         uvec4 set = pcg4d(uvec4(index, parameters.iteration, parameters.seed,
                                 STAGE_NODE_RAYS << 24u | parameters.segment << 12u | k));
-        bool bevel = kind == QUESTION_BEVEL;
+        bool bevel = kind == QUERY_BEVEL;
         traced_instance = meets_all(kind) ? ALL_INSTANCES : instance;
         mat3 axes;
         axes[0] = asked.direction;
@@ -189,6 +189,6 @@ void main() {
             }
         }
         node_rays[at].found = found;
-        if (parameters.first_sample + parameters.sample_count >= parameters.samples) node_rays[at].question = 0u;
+        if (parameters.first_sample + parameters.sample_count >= parameters.samples) node_rays[at].query = 0u;
     }
 }

@@ -65,9 +65,9 @@ void main() {
     Importon importon = importons[visit.x];
     // Corners of caustic cells, then of those of diffused photons, then of those of indirect ones.
     uint corner = parameters.caustics != 0u ? 0u : CORNERS;
-    uint corners = (importon.gathers & GATHERS_BY_RAY) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
-                   : wide_in_use[0] != 0u                                            ? 2u * CORNERS
-                                                                                     : CORNERS;
+    uint corners = (importon.gathers & FINAL_GATHER_ORIGIN) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
+                   : wide_in_use[0] != 0u                                                 ? 2u * CORNERS
+                                                                                          : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
     float radius = importon.radius;
     float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, iteration.wide_radius);
@@ -115,6 +115,6 @@ void main() {
         collect_splat(collected, number, estimate.radiance, corner > CORNERS, stands_for);
         if (parameters.light_sums != 0u) add_light(visit.x, importon, number, photons[number].flags, estimate);
     }
-    if (any) write_collected(visit.x, (importon.gathers & GATHERED_BY_RAY) != 0u, collected);
+    if (any) write_collected(visit.x, (importon.gathers & FINAL_GATHER_HIT) != 0u, collected);
     if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));
 }

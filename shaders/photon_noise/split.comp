@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 uniform Parameters { PhotonNoiseParameters parameters; };
 #include "splat_sums/read.glsl"
 buffer Radiances;
-buffer FoundRadiances;
+buffer GatherRadiances;
 readonly buffer PhotonCounts;
 writeonly buffer NoiseSamples;
 
@@ -31,5 +31,5 @@ void main() {
         noise_samples[(pixel.y - parameters.first_row) / parameters.step * parameters.columns
                       + pixel.x / parameters.step] = vec4(rest, all, read_signed(signed_place(index, false)), 0.0);
     radiances[index].rgb = vec3(0.0);
-    if (parameters.gathers != 0u) found_radiances[index].rgb = vec3(read_signed(signed_place(index, true)));
+    if (parameters.gathers != 0u) gather_radiances[index].rgb = vec3(read_signed(signed_place(index, true)));
 }

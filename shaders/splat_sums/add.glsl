@@ -22,7 +22,7 @@ void add_signed_quanta(uint place, float quanta) {
 // Threads that meet here write the same mark.
 void add_splat(uint importon, uint photon, vec3 radiance, uint stands_for) {
     photons[photon].depth = photons[photon].depth | PHOTON_CONTRIBUTED;
-    bool by_ray = (importons[importon].gathers & GATHERED_BY_RAY) != 0u;
+    bool by_ray = (importons[importon].gathers & FINAL_GATHER_HIT) != 0u;
     uint place = first_word(importon, by_ray);
     add_quanta(place, radiance.r * parameters.quanta);
     add_quanta(place + 2u, radiance.g * parameters.quanta);

@@ -45,7 +45,7 @@ struct LightPart {
 LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate estimate) {
     uint history = arrived_history(importon.history), first = first_scatter(history);
     uint scatter = lobe_scatter(unpack_kind(importon.lobe_kind), !estimate.front);
-    bool diffuse_lobe = scatter == SCATTER_DIFFUSE, by_ray = (importon.gathers & GATHERED_BY_RAY) != 0u;
+    bool diffuse_lobe = scatter == SCATTER_DIFFUSE, by_ray = (importon.gathers & FINAL_GATHER_HIT) != 0u;
     vec3 diffuse = diffuse_lobe ? estimate.radiance : estimate.diffuse;
     vec3 lobe = estimate.radiance - diffuse;
     if (part == 2u) {
@@ -66,7 +66,7 @@ LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate e
 void add_light(uint pixel, Importon importon, uint photon, uint photon_flags, Estimate estimate) {
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
         add_to_group_sum(pixel, photon_groups[photon_path_of(photons[photon].path)],
-                         (importon.gathers & GATHERED_BY_RAY) != 0u, estimate.radiance);
+                         (importon.gathers & FINAL_GATHER_HIT) != 0u, estimate.radiance);
     uint first = (parameters.light_sums & LIGHT_SUMS_SCATTERED) != 0u ? 0u : 2u;
     uint end = (parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u ? 3u : 2u;
     for (uint number = first; number < end; ++number) {

@@ -17,6 +17,7 @@ from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene.passes import NOISY_IMAGE
 from rppm_addon.scene.settings import DenoisingInputPasses
 from rppm_addon.session.checkpoint_file import write_checkpoint
+from rppm_addon.session.checkpoint_writer import still_render
 from rppm_addon.session.continuation import Continuation
 from rppm_addon.session.process.arrays import unpack
 from rppm_addon.session.process.known_programs import KnownPrograms
@@ -25,7 +26,6 @@ from rppm_addon.session.process.rendering import Rendering
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
 from rppm_addon.session.renderer import Renderer
-from rppm_addon.session.still_keeper import still_render
 
 PLACES = library_places()
 needs_library = pytest.mark.skipif(

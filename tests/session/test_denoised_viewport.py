@@ -16,13 +16,13 @@ from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.scene.errors import DenoiserError
 from rppm_addon.scene.settings import DenoisingInputPasses
-from rppm_addon.session.process import viewing as viewing_module
+from rppm_addon.session.process import viewport_renderer
 from rppm_addon.session.process.background_denoising import MOST_TIME, BackgroundDenoising
 from rppm_addon.session.process.client_session import ViewportSession
 from rppm_addon.session.process.known_programs import KnownPrograms
+from rppm_addon.session.process.resolution_scaler import ResolutionScaler
 from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.process.sharpness import Sharpness
-from rppm_addon.session.process.viewing import Viewing
+from rppm_addon.session.process.viewport_renderer import ViewportRenderer
 
 MARK = 77.0
 
@@ -87,13 +87,13 @@ def denoiser():
 @pytest.fixture
 def viewport(device, denoiser, monkeypatch):
     """Gives out each iteration's picture in full resolution, and denoises as often as it can."""
-    monkeypatch.setattr(viewing_module, "FRAME_SECONDS", 0.0)
-    monkeypatch.setattr(viewing_module, "MOST_PICTURE_TIME", math.inf)
-    monkeypatch.setattr(Sharpness, "levels", lambda *_: [1.0])
+    monkeypatch.setattr(viewport_renderer, "FRAME_SECONDS", 0.0)
+    monkeypatch.setattr(viewport_renderer, "MOST_PICTURE_TIME", math.inf)
+    monkeypatch.setattr(ResolutionScaler, "levels", lambda *_: [1.0])
     monkeypatch.setattr("rppm_addon.session.process.background_denoising.MOST_TIME", 1.0)
     shown = Shown()
     with device[0].moderngl:
-        shown.viewing = Viewing(*device, denoiser, shown.send, AllKnown())
+        shown.viewing = ViewportRenderer(*device, denoiser, shown.send, AllKnown())
         yield shown
         denoiser.let.set()
         shown.viewing.release()
@@ -171,12 +171,12 @@ def test_a_failure_is_told_and_noisy_pictures_go_on(viewport, denoiser):
 
 
 def test_without_a_library(device, monkeypatch):
-    monkeypatch.setattr(viewing_module, "FRAME_SECONDS", 0.0)
-    monkeypatch.setattr(viewing_module, "MOST_PICTURE_TIME", math.inf)
-    monkeypatch.setattr(Sharpness, "levels", lambda *_: [1.0])
+    monkeypatch.setattr(viewport_renderer, "FRAME_SECONDS", 0.0)
+    monkeypatch.setattr(viewport_renderer, "MOST_PICTURE_TIME", math.inf)
+    monkeypatch.setattr(ResolutionScaler, "levels", lambda *_: [1.0])
     shown = Shown()
     with device[0].moderngl:
-        shown.viewing = Viewing(*device, Denoiser([]), shown.send, AllKnown())
+        shown.viewing = ViewportRenderer(*device, Denoiser([]), shown.send, AllKnown())
         render(shown, scene_of(2))
         shown.viewing.release()
     assert [which for _, which in shown] == [False, False]

@@ -14,7 +14,7 @@ from rppm_addon.scene import Material, NodeGraph
 from rppm_addon.session.process import stand_ins
 from rppm_addon.session.process.known_programs import KnownPrograms
 from rppm_addon.session.process.stand_ins import StandIns
-from rppm_addon.session.process.viewing import Viewing
+from rppm_addon.session.process.viewport_renderer import ViewportRenderer
 
 
 class Compiling:
@@ -99,7 +99,9 @@ def test_the_picture_begins_anew_with_what_is_ready(monkeypatch):
     for waits in (False, True):
         if waits:
             monkeypatch.setattr(real, "has_stand_in", library.has_stand_in)
-        viewing = Viewing(context, real, Denoiser([]), lambda kind, **content: sent.append((kind, content)), known)
+        viewing = ViewportRenderer(
+            context, real, Denoiser([]), lambda kind, **content: sent.append((kind, content)), known
+        )
         shown = []
 
         def keep(combined, *_, shown=shown):

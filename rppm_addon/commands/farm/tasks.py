@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from ...scene.errors import SceneError, SettingsError
-from ...scene.gate import check_record
+from ...scene.validation import check_record
 from ..arguments import parser
 from ..frame_numbers import path_of_frame
 from ..picture_files import is_whole

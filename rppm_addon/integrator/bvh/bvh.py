@@ -14,7 +14,7 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.constants import Constants
 from ...gl.storage_blocks import StorageBlock
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
-from ..common.known import known
+from ..common.require import require
 from .clustering import MOST_DEPTH, NODE, build_nodes
 
 LEAF = 0x80000000
@@ -52,7 +52,7 @@ class Bvh(AccelerationStructure):
     @property
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
         """AccelerationStructure.traversal_buffers."""
-        return {"Triangles": known(self._triangles), "BvhNodes": self._nodes.buffer}
+        return {"Triangles": require(self._triangles), "BvhNodes": self._nodes.buffer}
 
 
 def bvh_nodes(vertices: np.ndarray, margin: float) -> np.ndarray:

@@ -6,13 +6,13 @@ Cells that hold many triangles are divided into tiles of 4 x 4 cells, level by l
 detailed object in a large scene gets small cells and a bare wall large ones.
 Building takes these steps, shaders of these names in shaders/deep_cubemap:
 
-1. plant: divides the faces down to the base level; list_overlap_jobs: per triangle, the tiles of the
+1. initialize_base: divides the faces down to the base level; list_overlap_jobs: per triangle, the tiles of the
    base level that it may touch; list_cluster_jobs: the same in scenes of many triangles, where those that follow each
    other and lie together stand in lists as one (clusters.glsl);
 2. overlap: rasterizes the jobs; the fragment shader tests triangle against cell exactly and appends a
    fragment (cell, triangle, depth interval). A compute shader can do the same, for devices that have
    much arithmetic and few units that rasterize;
-3. divide: decides which cells get a tile and which a list of entries; hand_down: hands the fragments
+3. divide: decides which cells get a tile and which a list of entries; propagate: hands the fragments
    on to either. What went to tiles is rasterized again (2), until nothing is divided any more;
 4. allocate_bins, count_entries, place_entries, scatter_entries: a counting sort into depth bins for cells that hold
    much and cannot be divided with gain;
@@ -37,7 +37,7 @@ from ...gl.storage_blocks import StorageBlock
 from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
 from ...scene.errors import DeviceError, DeviceLostError
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
-from ..common.known import known
+from ..common.require import require
 
 log = logging.getLogger(__name__)
 
@@ -275,7 +275,7 @@ class DeepCubemap(AccelerationStructure):
     def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
         """AccelerationStructure.traversal_buffers."""
         return {
-            "Triangles": known(self._triangles),
+            "Triangles": require(self._triangles),
             "DeepCubemap": self._state.buffer,
             "CubemapCells": self._cells.buffer,
             "DepthBins": self._bins.buffer,
@@ -420,7 +420,7 @@ class DeepCubemap(AccelerationStructure):
             "BinnedCells": self._binned_cells.buffer,
             "CellEntries": self._entries.buffer,
             "CoreTriangles": self._core.buffer,
-            "Triangles": known(self._triangles),
+            "Triangles": require(self._triangles),
         }
 
         def run(
@@ -429,7 +429,7 @@ class DeepCubemap(AccelerationStructure):
             program = self._library.compute(f"deep_cubemap/{name}.comp", defines)
             program.run(threads, {block: buffers[block] for block in program.blocks}, parameters)
 
-        run("plant", int(state["tile_count"]))
+        run("initialize_base", int(state["tile_count"]))
         if self._most_clustered > 1:
             defines = {**self._cluster_defines, "MOST_CLUSTERED": f"{self._most_clustered}u"}
             run("list_cluster_jobs", -(-int(state["triangle_count"]) // self._most_clustered), None, defines)
@@ -457,7 +457,7 @@ class DeepCubemap(AccelerationStructure):
                 "fragment_count": fragments, "tile_cells": CELLS_OF_A_TILE,
             }  # fmt: skip
             run("divide", end_tile - first_tile, division)
-            run("hand_down", fragments, division)
+            run("propagate", fragments, division)
             state = self._read_state()
             self._check_lists(state, level + 1)
             self._check_starts("entries", int(state["entry_count"]), level + 1)

@@ -14,13 +14,13 @@ from ...gl.programs import ProgramLibrary
 from ...gl.timers import StageTimers
 from ...scene.settings import DensityEstimation, RenderSettings
 from ..common.iteration import Iteration
-from ..common.known import known
+from ..common.require import require
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from .photon_grid import PhotonGrid
 from .splat_sums import SplatSums, radiance_quantum
 from .splatting import Splatting
-from .stored_photons import PhotonList, StoredPhotons, TakingImportons
+from .stored_photons import PhotonList, SplatTargets, StoredPhotons
 
 log = logging.getLogger(__name__)
 
@@ -88,13 +88,13 @@ class DensityEstimator(Stage):
         for other in self._routes.keys() - {route}:
             self.disown(self._routes.pop(other))
         if self._prepared is not route:
-            self._get(route).prepare(known(self._photons))
+            self._get(route).prepare(require(self._photons))
             self._prepared = route
 
-    def splat(self, importons: TakingImportons, timers: StageTimers) -> None:
+    def splat(self, importons: SplatTargets, timers: StageTimers) -> None:
         """DirectSplatting or IndirectSplatting: add to the sums what the photons give."""
         with timers.stage("indirect splatting" if importons.raster is None else "direct splatting"):
-            photons = known(self._photons)
+            photons = require(self._photons)
             if not photons.count or (importons.gathers and photons.indirect_count == photons.count):
                 return
             if self._is_undecided:
@@ -111,7 +111,7 @@ class DensityEstimator(Stage):
         automatic = self._wanted is DensityEstimation.AUTOMATIC
         return automatic and self._library not in _faster and _may_rasterize(self._context) and self._may_splat
 
-    def _try_both(self, photons: StoredPhotons, importons: TakingImportons) -> None:
+    def _try_both(self, photons: StoredPhotons, importons: SplatTargets) -> None:
         """Take the route that is faster with these importons, if they are many and take all photons.
 
         Nothing is added, and what contributes is marked as it will be anyway.
@@ -138,7 +138,7 @@ class DensityEstimator(Stage):
             1e3 * by_grid, 1e3 * rasterized, count, photons.count,
         )  # fmt: skip
 
-    def _seconds(self, name: DensityEstimation, photons: StoredPhotons, importons: TakingImportons) -> float:
+    def _seconds(self, name: DensityEstimation, photons: StoredPhotons, importons: SplatTargets) -> float:
         route = self._get(name)
         route.prepare(photons)  # buffers grow
 

@@ -18,7 +18,7 @@ from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
-from .stored_photons import StoredPhotons, TakingImportons
+from .stored_photons import SplatTargets, StoredPhotons
 
 _GRID_PARAMETERS = {
     "caustic_sides": "vec4",
@@ -117,7 +117,7 @@ class PhotonGrid(BufferSet):
         """Of cells for spheres up to a radius, whose reach shaders/photon_grid/gather.comp makes a little longer."""
         return 2.0 * (1.001 * radius + 2.0 * self._rounding)
 
-    def splat(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
+    def splat(self, photons: StoredPhotons, importons: SplatTargets, sums: SplatSums) -> None:
         """Add to the sums what the photons that were prepared give."""
         self._group(importons)
         visits, unfinished = self._visits, self._unfinished_visits
@@ -147,7 +147,7 @@ class PhotonGrid(BufferSet):
                 return
             visits, unfinished = unfinished, visits
 
-    def _group(self, importons: TakingImportons) -> None:
+    def _group(self, importons: SplatTargets) -> None:
         """List the importons that gather, those of a cell side by side."""
         buckets = _buckets(importons.living.known_count)
         cells = {"Buckets": self._importon_grid.buffer}

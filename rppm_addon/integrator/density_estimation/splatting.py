@@ -15,7 +15,7 @@ from ...gl.storage_blocks import StorageBlock
 from ..common.band import MOST_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
-from .stored_photons import CameraRaster, StoredPhotons, TakingImportons
+from .stored_photons import CameraRaster, SplatTargets, StoredPhotons
 
 _CUBE_RESOLUTION, _BLOCK_SIZE = 128, 8
 Constants("SplatCubemap", signed=True, BLOCK_SIZE=_BLOCK_SIZE)
@@ -88,7 +88,7 @@ class Splatting(BufferSet):
         """Make room for an iteration's photons."""
         self._jobs.require_items(_FACES_OF_A_SPLAT * photons.count)
 
-    def splat(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
+    def splat(self, photons: StoredPhotons, importons: SplatTargets, sums: SplatSums) -> None:
         """Add to the sums what the photons that were prepared for give."""
         if importons.raster is not None:
             self._direct(photons, importons, sums, importons.raster)
@@ -117,9 +117,7 @@ class Splatting(BufferSet):
             viewport=(0, 0, width, height),
         )
 
-    def _direct(
-        self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums, raster: CameraRaster
-    ) -> None:
+    def _direct(self, photons: StoredPhotons, importons: SplatTargets, sums: SplatSums, raster: CameraRaster) -> None:
         """DirectSplatting: onto the importons of the camera's first hits."""
         self._reset_jobs()
         self._direct_jobs.run(
@@ -140,7 +138,7 @@ class Splatting(BufferSet):
             sums.parameters,
         )
 
-    def _indirect(self, photons: StoredPhotons, importons: TakingImportons, sums: SplatSums) -> None:
+    def _indirect(self, photons: StoredPhotons, importons: SplatTargets, sums: SplatSums) -> None:
         """IndirectSplatting: onto importons anywhere, by the cubemap's lists."""
         self._heads.clear()
         self._core.buffer.write(bytes(4))

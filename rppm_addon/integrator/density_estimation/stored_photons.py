@@ -125,7 +125,7 @@ class CameraRaster:
 
 
 @dataclass(frozen=True)
-class TakingImportons:
+class SplatTargets:
     """The importons of a segment of a band's camera paths, one a pixel."""
 
     importons: moderngl.Buffer

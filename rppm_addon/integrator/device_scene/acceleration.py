@@ -10,7 +10,7 @@ from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure as Kind
 from ..acceleration.acceleration_structure import AccelerationStructure
 from ..bvh.bvh import Bvh
-from ..common.known import known
+from ..common.require import require
 from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..surfaces.geometry import Geometry
@@ -32,7 +32,7 @@ class Acceleration:
     @property
     def structure(self) -> AccelerationStructure:
         """What rays are traced through, once it was built."""
-        return known(self._structure)
+        return require(self._structure)
 
     def kind(self, scene: Scene) -> Kind:
         """The structure for a scene: what its settings ask for.

@@ -16,7 +16,7 @@ from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure
 from ..common.iteration import Iteration
-from ..common.known import known
+from ..common.require import require
 from ..lights.lights import Lights
 from ..surfaces.bodies import warn_of_open_bodies
 from ..surfaces.displacement import Displacement
@@ -68,7 +68,7 @@ class DeviceScene:
     def context(self) -> StageContext:
         """For stages, at the moment that the scene was last moved to."""
         return StageContext(
-            known(self.scene),
+            require(self.scene),
             self.geometry,
             self.materials,
             self.lights,
@@ -143,8 +143,8 @@ class DeviceScene:
 
         The deep cubemap's center stays: it changes no picture, and a camera that moves alone costs nothing.
         """
-        shutter = known(known(self._source_scene).shutter)
-        self.scene = known(self._moving).at(shutter.time_of(moment(iteration.number, iteration.seed)))
+        shutter = require(require(self._source_scene).shutter)
+        self.scene = require(self._moving).at(shutter.time_of(moment(iteration.number, iteration.seed)))
         changes = changes_between(self._uploaded_scene, self.scene)
         self._uploaded_scene = None
         with self._timers.stage("motion"):
@@ -158,7 +158,7 @@ class DeviceScene:
         self.scene = self._source_scene = scene
 
     def _build_materials(self, changes: Changes) -> None:
-        scene = known(self.scene)
+        scene = require(self.scene)
         self.materials.follow(scene)
         if changes.materials:
             with self._collect_warnings("materials"):
@@ -170,7 +170,7 @@ class DeviceScene:
 
         photons: of the iteration. keep_learned: go on with what was learned of the lights.
         """
-        scene = known(self.scene)
+        scene = require(self.scene)
         if changes.geometry:
             self.geometry.build(scene, self.materials.default_material, self._swept)
         if changes.geometry or changes.materials:
@@ -179,7 +179,7 @@ class DeviceScene:
             if not keep_learned:  # within an open shutter no mesh gets holes
                 with self._collect_warnings("bodies"):
                     self._warn_of_media(scene)
-        self.resolve.look_from(scene)
+        self.resolve.set_view(scene)
         if changes.geometry or changes.materials or changes.lights:
             with self._collect_warnings("lights"):
                 self.lights.build(
@@ -207,7 +207,7 @@ class DeviceScene:
     @contextlib.contextmanager
     def _collect_warnings(self, part: str) -> Iterator[None]:
         """Keep what is said while a part is built."""
-        scene = known(self.scene)
+        scene = require(self.scene)
         before, scene.warnings = scene.warnings, []
         try:
             yield
@@ -217,8 +217,8 @@ class DeviceScene:
 
     def _build_acceleration(self, changes: Changes, center_tolerance: float) -> None:
         with self._timers.stage("acceleration structure"):
-            self.acceleration.update(known(self._source_scene), self.geometry, changes, center_tolerance)
-        self.resolve.trace_through(self.acceleration.structure)
+            self.acceleration.update(require(self._source_scene), self.geometry, changes, center_tolerance)
+        self.resolve.set_accelerator(self.acceleration.structure)
 
     @property
     def memory_bytes(self) -> dict[str, dict[str, int]]:

@@ -18,10 +18,10 @@ from ...materials.tables import MaterialTables
 from ...scene.errors import DeviceError
 from ...scene.meshes import Instance, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
 from ..common.records.closures import CLOSURE
 from ..common.records.rays import HIT, NO_TRIANGLE, RAY
+from ..common.require import require
 from ..surfaces.geometry import Geometry, Placement, objects_of_most
 from ..surfaces.resolve import Resolve
 from .light_links import NO_LINK, LightLinkTable
@@ -212,7 +212,7 @@ class Emitters(BufferSet):
             {
                 "Rays": rays,
                 "LightTriangles": light_triangles,
-                "Triangles": known(self._world_triangles),
+                "Triangles": require(self._world_triangles),
                 "EmitterRays": self._rays.buffer,
                 "EmitterHits": hits,
             },

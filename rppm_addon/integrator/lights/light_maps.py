@@ -17,7 +17,7 @@ from ...materials.evaluation import LightSurface, LightSurfaceKind, MapShape
 from ...materials.tables import MaterialTables
 from ...scene.images import Image
 from ...scene.lights import Light, LightKind
-from ..common.known import known
+from ..common.require import require
 from ..surfaces.surface_attributes import object_record
 
 _PATTERN_WIDTH, _WIDEST_MAP = 1024, 2048
@@ -62,7 +62,7 @@ class LightMaps(BufferSet):
     def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> None:
         """Ask the nodes of all lights that have some."""
         with_nodes = {index: light for index, light in enumerate(lights) if light.graph is not None}
-        varying = {index: light_variation(known(light.graph)) for index, light in with_nodes.items()}
+        varying = {index: light_variation(require(light.graph)) for index, light in with_nodes.items()}
         shapes = {index: _shape(with_nodes[index], varies) for index, varies in varying.items() if varies}
         sizes = {index: _size(with_nodes[index], shape, images) for index, shape in shapes.items()}
         widest = min(int(self._context.limits["GL_MAX_TEXTURE_SIZE"]), 2 * (_WIDEST_MAP + 2))
@@ -90,7 +90,7 @@ class LightMaps(BufferSet):
     @property
     def texture(self) -> moderngl.Texture:
         """The maps of all lights, which light_maps.glsl reads."""
-        return known(self._texture)
+        return require(self._texture)
 
 
 def is_sphere(light: Light) -> bool:
@@ -120,7 +120,9 @@ def _size(light: Light, shape: MapShape, images: list[Image]) -> tuple[int, int]
     """Width and height of a map that shows the pixels of the images in use."""
     if light.kind is LightKind.SUN and light.sun_angle <= 0.0:
         return 1, 1
-    widths = [images[node.image].pixels.shape[1] for node in known(light.graph).nodes if 0 <= node.image < len(images)]
+    widths = [
+        images[node.image].pixels.shape[1] for node in require(light.graph).nodes if 0 <= node.image < len(images)
+    ]
     spherical = shape in (MapShape.NORMALS, MapShape.DIRECTIONS)
     least = _PATTERN_WIDTH if spherical else _PATTERN_WIDTH // 2
     width = min(max([least, *widths]), _WIDEST_MAP)
@@ -173,7 +175,7 @@ def _asked(
         kind, shape, np.asarray(light.matrix)[:3, 3], normal, u, v, light.radius if is_sphere(light) else 0.0,
         object_record(light.matrix),
     )  # fmt: skip
-    return materials.evaluate(known(light.graph), *size, ray_length=distance, light_surface=light_surface)
+    return materials.evaluate(require(light.graph), *size, ray_length=distance, light_surface=light_surface)
 
 
 def _mean(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:

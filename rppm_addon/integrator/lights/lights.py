@@ -16,7 +16,7 @@ from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
-from ..common.known import known
+from ..common.require import require
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
@@ -140,7 +140,7 @@ class Lights(BufferSet):
     @property
     def portals(self) -> Portals:
         """Those of the scene, once it was built."""
-        return known(self._portals)
+        return require(self._portals)
 
     @property
     def blocks(self) -> dict[str, Bindable]:
@@ -149,7 +149,7 @@ class Lights(BufferSet):
             **super().blocks,
             **self.environment.textures,
             "light_maps": self.light_maps.texture,
-            "Triangles": known(self._triangles),
+            "Triangles": require(self._triangles),
         }
 
     def linking_blocks(self, contributions: moderngl.Buffer) -> dict[str, moderngl.Buffer] | None:

@@ -42,7 +42,7 @@ _SURFACES_AT_ONCE = 16
 """A GPU is asked whether any shadow ray passes surfaces still this seldom, as it has to be waited for."""
 
 
-def _told_pixels(sizes: StageSizes) -> int:
+def _pass_pixels(sizes: StageSizes) -> int:
     return max(split_pixels(sizes), grouped_pixels(sizes))
 
 
@@ -53,7 +53,7 @@ class DirectLight(Stage):
     remedy = "lower the resolution"
     _rays = StorageBuffer("shadow rays", RAY, band_pixels, block="ShadowRays")
     contributions = StorageBuffer("direct light", "vec4", band_pixels, block="Contributions")
-    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _told_pixels, block="LightSplits")
+    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _pass_pixels, block="LightSplits")
     visibility = StorageBuffer("visibility", "uint", band_pixels, block="Visibility")
     triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels, block="LightTriangles")
     living_rays = PathList("living shadow rays", band_pixels)
@@ -69,7 +69,7 @@ class DirectLight(Stage):
         self._meet = library.compute("direct_light/meet.comp")
         self._pass = library.compute("direct_light/pass.comp")
         self._add = library.compute("direct_light/add.comp")
-        self._splits_light = _told_pixels(sizes) > 0
+        self._splits_light = _pass_pixels(sizes) > 0
 
     def add(
         self,

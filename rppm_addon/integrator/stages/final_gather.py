@@ -41,7 +41,7 @@ sharp surfaces, but for the photons' share, at once, if the world is even, or fr
 ``radius`` then is. ``hit`` is where the ray arrived at a surface that stores photons, ``hit_normal`` on its side; where
 it came to none, far behind all. Before the path gathers, ``position`` is where it was scattered last."""
 StorageBlock("GatheringVertices", "GatheringVertex gathering_vertices[];")
-StorageBlock("FoundRadiances", "vec4 found_radiances[];")
+StorageBlock("GatherRadiances", "vec4 gather_radiances[];")
 
 
 Record("FoundParameters", count="uint", quantum="float")
@@ -67,7 +67,7 @@ class FinalGather(Stage):
     memory_group = "final gather"
     remedy = "lower the resolution"
     vertices = StorageBuffer("gathering vertices", GATHERING_VERTEX, band_pixels, block="GatheringVertices")
-    radiances = StorageBuffer("found radiance", "vec4", band_pixels, block="FoundRadiances")
+    radiances = StorageBuffer("found radiance", "vec4", band_pixels, block="GatherRadiances")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -107,7 +107,7 @@ class FinalGather(Stage):
         radius = SHARED_RADIUS * radii.in_pixels
         self._share_program.run(
             band.pixel_count,
-            {**context.blocks, **self.blocks, "FoundRadiances": found, "Radiances": radiances},
+            {**context.blocks, **self.blocks, "GatherRadiances": found, "Radiances": radiances},
             {
                 "count": band.pixel_count,
                 "width": band.columns,

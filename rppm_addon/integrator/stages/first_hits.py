@@ -14,8 +14,8 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.errors import DeviceError
 from ...scene.settings import FirstPhotonHits
-from ..common.known import known
 from ..common.living_paths import LivingPaths, PathList
+from ..common.require import require
 from ..device_scene.stage_context import StageContext
 from .light_gbuffer import LightGBuffer
 
@@ -127,6 +127,6 @@ class FirstHits(BufferSet):
         if route is FirstPhotonHits.TRACED:
             context.acceleration.trace(rays, hits, living)
             return
-        known(self._gbuffer).find(context.blocks, rays, hits, living.most, self._left)
+        require(self._gbuffer).find(context.blocks, rays, hits, living.most, self._left)
         if not self._left.known_empty:
             context.acceleration.trace(rays, hits, self._left)

@@ -16,7 +16,7 @@ from ..common.records.importons import IMPORTON
 from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, exiting_pixels
-from ..density_estimation.stored_photons import CameraRaster, TakingImportons
+from ..density_estimation.stored_photons import CameraRaster, SplatTargets
 from ..device_scene.stage_context import StageContext
 from ..surfaces.resolve import CameraPaths
 
@@ -97,9 +97,9 @@ class Importons(Stage):
                 {"segment": segment, "first_pixel": band.first_pixel},
             )
 
-    def taking(self, context: StageContext, segment: int, raster: CameraRaster | None) -> TakingImportons:
+    def splat_targets(self, context: StageContext, segment: int, raster: CameraRaster | None) -> SplatTargets:
         """Those of the segment, to take photons; ``raster``: where its hits lie on the camera's."""
-        return TakingImportons(
+        return SplatTargets(
             self.importons.buffer,
             self.living,
             gathers=segment == 0 and context.gathers,

@@ -23,8 +23,8 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ..common.known import known
 from ..common.living_paths import LivingPaths
+from ..common.require import require
 from ..lights.light_records import LightShape
 from ..surfaces.geometry import Geometry
 
@@ -215,7 +215,7 @@ class LightGBuffer(BufferSet):
                 return jobs
 
     def _draw(self, program: DrawProgram, jobs: int, blocks: dict[str, moderngl.Buffer]) -> None:
-        program.draw(known(self._framebuffer), 6 * jobs, blocks, self._parameters)
+        program.draw(require(self._framebuffer), 6 * jobs, blocks, self._parameters)
 
     def find(
         self,

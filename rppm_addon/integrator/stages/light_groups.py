@@ -103,7 +103,7 @@ class LightGroups(Listener):
                 }
                 self._taken.clear()
                 if context.gathers:
-                    found = {**final_gather.blocks, "FoundRadiances": self._found.buffer}
+                    found = {**final_gather.blocks, "GatherRadiances": self._found.buffer}
                     self._programs["found"].run(band.pixel_count, {**light, **found}, parameters)
                     final_gather.share_found(context, self._found.buffer, self._taken.buffer, band, events.radii)
                 self._programs["accumulate"].run(

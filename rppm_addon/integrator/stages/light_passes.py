@@ -38,7 +38,7 @@ Record(
 StorageBlock("FoundCaustics", "vec4 found_caustics[];")
 
 
-class _Gathered(enum.IntEnum):
+class GatherPart(enum.IntEnum):
     """Parts of what gathering rays found."""
 
     ALL = 0
@@ -46,7 +46,7 @@ class _Gathered(enum.IntEnum):
     CAUSTICS = 2
 
 
-Constants("GatheredParts", GATHERED=_Gathered)
+Constants("GatherParts", GATHER_PART=GatherPart)
 
 
 def _scattered_pixels(sizes: StageSizes) -> int:
@@ -113,13 +113,13 @@ class LightPasses(Listener):
                     band.pixel_count, {**blocks, "Radiances": self._taken.buffer}, parameters | {"part": int(part)}
                 )
 
-    def _parts(self, final_gather: FinalGather) -> dict[_Gathered, moderngl.Buffer]:
+    def _parts(self, final_gather: FinalGather) -> dict[GatherPart, moderngl.Buffer]:
         """What is shared of what gathering rays found."""
-        parts: dict[_Gathered, moderngl.Buffer] = {}
+        parts: dict[GatherPart, moderngl.Buffer] = {}
         if LightSum.SCATTERED in self._kept:
-            parts |= {_Gathered.ALL: final_gather.radiances.buffer, _Gathered.DIRECT: self._found_direct.buffer}
+            parts |= {GatherPart.ALL: final_gather.radiances.buffer, GatherPart.DIRECT: self._found_direct.buffer}
         if LightSum.CAUSTICS in self._kept:
-            parts[_Gathered.CAUSTICS] = self._found_caustics.buffer
+            parts[GatherPart.CAUSTICS] = self._found_caustics.buffer
         return parts
 
     def _parameters(self, band: Band, segment: int = 0) -> dict[str, float]:
@@ -131,6 +131,6 @@ class LightPasses(Listener):
             "scattered": LightSum.SCATTERED in self._kept,
             "caustics": LightSum.CAUSTICS in self._kept,
             "light_sums": int(self._kept),
-            "part": int(_Gathered.ALL),
+            "part": int(GatherPart.ALL),
             "quantum": 0.0,
         }

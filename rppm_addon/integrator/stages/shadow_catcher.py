@@ -13,7 +13,7 @@ from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
-StorageBlock("LitCatchers", "uint lit_catchers[];")
+StorageBlock("CatcherVisibility", "uint catcher_visibility[];")
 
 
 Record("ShadowCatcherParameters", segment="uint", first_pixel="uint")
@@ -36,7 +36,7 @@ class ShadowCatcher(Stage):
     _triangles = StorageBuffer(
         "triangles of lights of shadow catchers", "uint", _catching_pixels, block="LightTriangles"
     )
-    lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels, block="LitCatchers")
+    lit = StorageBuffer("lit shadow catchers", "uint", _catching_pixels, block="CatcherVisibility")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)

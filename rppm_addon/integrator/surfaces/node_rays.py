@@ -34,16 +34,16 @@ Record(
     sample_count="uint",
     samples="uint",
 )
-NODE_RAY = Record("NodeRay", direction="vec3", question="uint", found="vec3", reach="float")
+NODE_RAY = Record("NodeRay", direction="vec3", query="uint", found="vec3", reach="float")
 """What a node asks: the unit vector around which rays go and how far they reach, meters; and what they found so far:
-how many met nothing, or the weighted sum of normals. No question: 0. Of a Raycast, which finds a normal, another
+how many met nothing, or the weighted sum of normals. No query: 0. Of a Raycast, which finds a normal, another
 follows. First its ``direction`` is where the ray begins; then it holds two barycentric coordinates of the hit and the
 lower 16 bits of the triangle, ``reach`` the others, and ``found`` the distance, meters, whether anything was met, and
 whether the object itself."""
 StorageBlock("NodeRays", "NodeRay node_rays[];")
 
 
-class _Question(enum.IntEnum):
+class NodeRayQuery(enum.IntEnum):
     """What is looked for."""
 
     OCCLUSION = 1
@@ -56,13 +56,13 @@ class _Question(enum.IntEnum):
 
 
 Constants(
-    "NodeQuestions",
-    QUESTION=_Question,
-    QUESTION_KIND=0x7,
-    QUESTION_FROM_SURFACE=0x8,
-    QUESTION_LEVEL=0xFFF,
-    QUESTION_LEVEL_SHIFT=4,
-    QUESTION_SAMPLES_SHIFT=16,
+    "NodeRayQueries",
+    QUERY=NodeRayQuery,
+    QUERY_KIND=0x7,
+    QUERY_FROM_SURFACE=0x8,
+    QUERY_LEVEL=0xFFF,
+    QUERY_LEVEL_SHIFT=4,
+    QUERY_SAMPLES_SHIFT=16,
     MOST_NODE_RAYS=MOST_NODE_RAYS,
 )
 _SAMPLES_AT_ONCE = 8

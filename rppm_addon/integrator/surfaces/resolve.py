@@ -128,7 +128,7 @@ class Resolve(BufferSet):
 
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
-        What the camera tells nodes follows by look_from.
+        What the camera tells nodes follows by set_view.
 
         A program that the driver refuses is replaced by that of a gray surface, with a warning in scene.warnings.
         Raises DeviceError when the device cannot hold the attributes.
@@ -147,19 +147,19 @@ class Resolve(BufferSet):
             **materials.buffers,
         }
 
-    def trace_through(self, traversal: AccelerationStructure) -> None:
+    def set_accelerator(self, traversal: AccelerationStructure) -> None:
         """Take what rays of nodes run through; from a build until then such nodes find nothing."""
         self._traversal = traversal
         if self._ray_stride:
             self.expect_rays()
 
     def expect_rays(self, casts: bool = False) -> None:
-        """Have the program made that answers nodes which ask for rays, after trace_through; casts: also for such as
+        """Have the program made that answers nodes which ask for rays, after set_accelerator; casts: also for such as
         begin anywhere."""
         if self._traversal is not None:
             self._node_rays.program(self._traversal, self._casts_rays or casts)
 
-    def look_from(self, scene: Scene) -> None:
+    def set_view(self, scene: Scene) -> None:
         """Take the camera that nodes may ask about, where the world is, and the seed of random choices."""
         camera = scene.camera
         self._parameters = {

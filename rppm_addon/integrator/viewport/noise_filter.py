@@ -15,7 +15,7 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES
-from ..common.known import known
+from ..common.require import require
 from ..common.stage_sizes import StageSizes, film_pixels
 from ..common.viewport_demands import FILTERED_PASSES
 from ..stages.film import Film
@@ -114,8 +114,8 @@ class NoiseFilter(BufferSet):
             "luminance_step": _luminance_step(samples),
         }
         buffers = {
-            "Film": known(film.radiance.whole),
-            "PhotonLight": known(film.photon_light.whole),
+            "Film": require(film.radiance.whole),
+            "PhotonLight": require(film.photon_light.whole),
             "PassValues": self._passes.buffer,
         }
         signals = {"Signals": self.picture.buffer}

@@ -17,7 +17,7 @@ from ...materials.node_rays import casts_rays, traces_rays
 from ...materials.subsurface import has_subsurface
 from ...scene.materials import Material
 from ...scene.scene import Scene
-from ..common.known import known
+from ..common.require import require
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import ViewportDemands
 from ..first_look import FirstLook
@@ -86,7 +86,7 @@ class ViewportPictures:
         filtered = strength(samples, of)
         fade = 1.0 if coarse else max(0.0, 1.0 - samples / min(of, HISTORY_ENDS))
         moves = can_move(scene) and (coarse or (fade > 0.0 and self._reprojection.has_history(scene)))
-        picture = known(film.radiance.whole)
+        picture = require(film.radiance.whole)
         if filtered > 0.0:
             noise_filter = self._filter_of(width, height)
             noise_filter.filter(film, samples, filtered)

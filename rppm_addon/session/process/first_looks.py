@@ -13,7 +13,7 @@ from ...integrator.progressive import ProgressivePhotonMapper
 from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
 from ..renderer import log
-from .sharpness import at_level
+from .resolution_scaler import at_level
 
 MOST_PIXELS = 1 << 22
 """Pixels that a first look is drawn with at most. A larger picture is enlarged from it: the memory on the device is not

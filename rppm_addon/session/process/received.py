@@ -4,7 +4,7 @@
 from typing import Any, TypeVar
 
 from ...scene.errors import SceneError
-from ...scene.gate import check_record
+from ...scene.validation import check_record
 from .protocol import ProtocolError
 
 _Record = TypeVar("_Record")

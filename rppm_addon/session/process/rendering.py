@@ -15,11 +15,11 @@ from ...integrator.progressive import ProgressivePhotonMapper
 from ...pictures import PictureError
 from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
+from ..checkpoint_writer import CheckpointWriter, continued_still
 from ..continuation import Continuation, Pause, place_of
 from ..denoised_pictures import finished_frame, wanted_frame
 from ..renderer import SlicedRender, log
 from ..results import Frame, Progress, RenderResult
-from ..still_keeper import StillKeeper, continued_still
 from .arrays import pack
 from .background_denoising import BackgroundFinish
 from .first_looks import FirstLooks
@@ -56,7 +56,7 @@ class Rendering:
         self._checkpoint = ""
         self._handed_on: tuple[Pause, float, str] | None = None
         """Where the next scene goes on, the seconds that it has taken, and why the process before ended."""
-        self._keeper: StillKeeper | None = None
+        self._keeper: CheckpointWriter | None = None
         self._scene: Scene | None = None
         self._mapper: ProgressivePhotonMapper | None = None
         self._render: SlicedRender | None = None

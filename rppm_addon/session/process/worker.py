@@ -26,7 +26,7 @@ from .protocol import TO_CHILD, VERSION, ProtocolError, check_message, read_mess
 from .rendering import Rendering
 from .sessions import SessionKind
 from .transfer import SceneReceiver
-from .viewing import Viewing
+from .viewport_renderer import ViewportRenderer
 
 log = logging.getLogger(__name__)
 
@@ -72,7 +72,7 @@ class Worker:
         self._writing = threading.Lock()
         self._receiver = SceneReceiver()
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
-        self._sessions: dict[int, tuple[SessionKind, Viewing | Rendering | Preparation]] = {}
+        self._sessions: dict[int, tuple[SessionKind, ViewportRenderer | Rendering | Preparation]] = {}
         self._programs = KnownPrograms()
         self._share = FairShare()
         self._whole = threading.Event()
@@ -128,7 +128,7 @@ class Worker:
         elif kind == "show":
             message["scene"] = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
             _, session = self._sessions.get(message["session"], (None, None))
-            if isinstance(session, Viewing):
+            if isinstance(session, ViewportRenderer):
                 session.expect(message["scene"], message["generation"])
             self._send("taken", session=message["session"], number=message.pop("number"))
             self._whole.set()
@@ -158,9 +158,9 @@ class Worker:
         elif kind == "open":
             session_kind = SessionKind[message["session_kind"]]
             send = functools.partial(self._send, session=number)
-            session: Viewing | Rendering | Preparation
+            session: ViewportRenderer | Rendering | Preparation
             if session_kind is SessionKind.VIEWPORT:
-                session = Viewing(self._context, self._library, self._denoiser, send, self._programs)
+                session = ViewportRenderer(self._context, self._library, self._denoiser, send, self._programs)
             elif session_kind is SessionKind.PREPARATION:
                 session = Preparation(self._context, self._library, send)
             else:

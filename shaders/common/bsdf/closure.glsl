@@ -38,7 +38,7 @@ bool closure_backfacing(Closure closure) { return (closure.flags & CLOSURE_BACKF
 bool closure_hit(Closure closure) { return closure.triangle != NO_TRIANGLE; }
 
 // Smoother lobes cannot be evaluated toward a light, only followed.
-const float SMOOTHEST_LIT = 1e-4;
+const float MIN_MIS_ALPHA = 1e-4;
 
 // Lobes above the cut-off store photons; the others are traced on. alpha is roughness squared. Fibers are too thin to
 // store any.
@@ -95,7 +95,7 @@ float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
 // How a camera path may go on: shares of the transparent part and of the three lobes, where they are specular; and of
 // the diffuse and translucent parts together and of the lobes that store photons, by which a path that gathers goes on
 // once. total: of those by which it may go on; survival: the probability that it does.
-struct PathShares {
+struct LobeSelection {
     vec4 specular;
     vec4 stored;
     float total;
@@ -115,4 +115,4 @@ bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, i
 }
 
 // Probability of going on by a part of the closure with this share, survival included.
-float part_probability(float share, PathShares shares) { return share * shares.survival / max(shares.total, 1e-20); }
+float part_probability(float share, LobeSelection shares) { return share * shares.survival / max(shares.total, 1e-20); }

@@ -7,9 +7,9 @@
 MicrofacetLobe stored_lobe(uint path, int k) { return unpacked_lobe(closures[path].lobes[k]); }
 
 // is_seen: by the camera.
-PathShares path_shares(uint path, Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool gathers,
-                       bool is_seen) {
-    PathShares shares = PathShares(
+LobeSelection path_shares(uint path, Closure closure, vec3 throughput, vec3 viewer, float specular_alpha, bool gathers,
+                          bool is_seen) {
+    LobeSelection shares = LobeSelection(
         vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0),
         vec4(largest(throughput * closure.diffuse) + largest(throughput * closure.translucent), 0.0, 0.0, 0.0), 0.0,
         1.0);

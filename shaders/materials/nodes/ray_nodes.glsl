@@ -18,7 +18,7 @@ void node_ambient_occlusion(Surface surface, int inside, int only_local, uint pl
     if (parameters.ray_stride > 0u && reach > 0.0) {
         vec3 direction = direction_or(normal, surface.normal);
         uint count = ray_count(samples);
-        uint kind = only_local != 0 ? QUESTION_LOCAL_OCCLUSION : QUESTION_OCCLUSION;
+        uint kind = only_local != 0 ? QUERY_LOCAL_OCCLUSION : QUERY_OCCLUSION;
         ao = found_by_rays(place, level, kind, count, inside != 0 ? -direction : direction, reach).x / float(count);
     }
 #endif
@@ -32,7 +32,7 @@ void node_bevel(Surface surface, uint place, uint level, float radius, vec3 norm
     bool blurred = (surface.ray & RAY_DIFFUSE) != 0u;
     if (parameters.ray_stride > 0u && radius > 0.0 && !blurred) {
         uint count = ray_count(samples);
-        vec3 mean_normal = found_by_rays(place, level, QUESTION_BEVEL, count, surface.geometric, radius);
+        vec3 mean_normal = found_by_rays(place, level, QUERY_BEVEL, count, surface.geometric, radius);
         vec3 beveled = direction_or(surface.backfacing ? -mean_normal : mean_normal, surface.normal);
         normal = direction_or(normal_in + beveled - surface.normal, normal_in);
     }

@@ -11,9 +11,9 @@ void node_raycast(Surface surface, int only_local, uint place, uint level, vec3 
 #ifdef NODE_RAYS
     float size = length(direction);
     if (parameters.ray_stride > 0u && reach > 0.0 && size > 0.0) {
-        uint kind = only_local != 0 ? QUESTION_LOCAL_RAYCAST : QUESTION_RAYCAST;
+        uint kind = only_local != 0 ? QUERY_LOCAL_RAYCAST : QUERY_RAYCAST;
         bool from_surface = position == world_position(surface);
-        if (from_surface) kind |= QUESTION_FROM_SURFACE;
+        if (from_surface) kind |= QUERY_FROM_SURFACE;
         vec3 normal = found_by_rays(place, level, kind, 1u, direction / size, reach * size);
         uint beside = parameters.ray_stride * path_of_node_rays + place + 1u;
         if (parameters.ray_level == level)

@@ -9,7 +9,7 @@ import OpenEXR
 import pytest
 from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
 
-from rppm_addon.blender import following, renderer_thread
+from rppm_addon.blender import frame_reuse, renderer_thread
 from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.surfaces.geometry import Geometry
@@ -103,7 +103,7 @@ def animation(scene, folder, persistent):
 
 def still(scene, folder, frame):
     """The picture of one frame, of which nothing was known before."""
-    following.forget()
+    frame_reuse.forget()
     write_exr_files(scene, folder)
     scene.frame_set(frame)
     scene.render.filepath = str(folder / "still.exr")
@@ -160,7 +160,7 @@ def test_only_what_changed_is_uploaded_and_built(moving, tmp_path, monkeypatch, 
     watch(Geometry, "build", "geometry")
     watch(Acceleration, "build", "structure")
     watch(ProgressivePhotonMapper, "update", "frame")
-    following.forget()
+    frame_reuse.forget()
     animation(moving, tmp_path, persistent)
     frames = " ".join(done).split("frame")[1:]
     words = [sorted(set(frame.split())) for frame in frames]
@@ -246,9 +246,9 @@ def test_broken_layers_do_not_end_blender(moving, tmp_path):
 def test_what_is_kept_is_dropped_with_the_file(moving, tmp_path):
     moving.frame_end = 1
     animation(moving, tmp_path, False)
-    assert following._last is not None
+    assert frame_reuse._last is not None
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    assert following._last is None
+    assert frame_reuse._last is None
     assert renderer_thread._shared._thread.is_alive()  # the programs stay
 
 

@@ -17,8 +17,8 @@ from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
 from rppm_addon.integrator.density_estimation.stored_photons import (
     DirectPhotons,
     PhotonList,
+    SplatTargets,
     StoredPhotons,
-    TakingImportons,
 )
 
 UP = 0
@@ -57,7 +57,7 @@ class Device:
         )  # fmt: skip
         living = LivingPaths(self._context, self._library, "paths", "take fewer")
         living.fill(len(importons))
-        taking = TakingImportons(buffers[1].buffer, living, False, True, None, np.zeros(3))
+        taking = SplatTargets(buffers[1].buffer, living, False, True, None, np.zeros(3))
         grid.prepare(stored)
         grid.splat(stored, taking, sums)
         contributed = buffers[0].read(PHOTON.dtype, len(photons))["depth"] & PHOTON_CONTRIBUTED != 0
@@ -161,11 +161,11 @@ def test_who_takes_what(device):
     photons["flags"] |= np.array(
         [0, PhotonFlag.AFTER_ROUGH_BOUNCE, PhotonFlag.AFTER_ROUGH_BOUNCE | PhotonFlag.INDIRECT], np.uint32
     )
-    both = GatherFlag.GATHERED_BY_RAY | GatherFlag.GATHERS_BY_RAY
-    for gathers, expected in ((0, 2), (GatherFlag.GATHERS_BY_RAY, 1), (GatherFlag.GATHERED_BY_RAY, 2), (both, 1)):
+    both = GatherFlag.FINAL_GATHER_HIT | GatherFlag.FINAL_GATHER_ORIGIN
+    for gathers, expected in ((0, 2), (GatherFlag.FINAL_GATHER_ORIGIN, 1), (GatherFlag.FINAL_GATHER_HIT, 2), (both, 1)):
         importons = importons_at(np.zeros((2, 3), np.float32), np.array([0.1, 0.0], np.float32), gathers)
         contributed, diffused, any_light = device.gather(photons, importons, SplatRadii(0.1, 0.2))
-        np.testing.assert_array_equal(contributed, [True, True, not gathers & GatherFlag.GATHERS_BY_RAY])
+        np.testing.assert_array_equal(contributed, [True, True, not gathers & GatherFlag.FINAL_GATHER_ORIGIN])
         np.testing.assert_array_equal(diffused, [expected, 0])
         np.testing.assert_array_equal(any_light, [True, False])
     nothing = importons_at(np.zeros((2, 3), np.float32), np.zeros(2))

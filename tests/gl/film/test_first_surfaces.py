@@ -7,7 +7,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
-from rppm_addon.session.process.viewing import shown_picture
+from rppm_addon.session.process.viewport_renderer import shown_picture
 from rppm_addon.session.renderer import read_combined
 
 

@@ -16,7 +16,7 @@ from rppm_addon.integrator.viewport.pictures import ViewportPictures, demands_of
 from rppm_addon.integrator.viewport.reprojection import HISTORY_ENDS, differ_by_view
 from rppm_addon.scene import Light, LightKind
 from rppm_addon.scene.scene import Scene
-from rppm_addon.session.process.sharpness import at_level
+from rppm_addon.session.process.resolution_scaler import at_level
 
 FILTERED = ViewportDemands(is_filtered=True)
 SIZE = 48

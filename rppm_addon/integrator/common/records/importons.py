@@ -42,13 +42,15 @@ StorageBlock("Importons", "Importon importons[];")
 class GatherFlag(enum.IntFlag):
     """What importons gather; without the first they take all photons."""
 
-    GATHERS_BY_RAY = 1
+    FINAL_GATHER_ORIGIN = 1
     """It leaves indirect photons to the path, which goes on for them."""
-    GATHERED_BY_RAY = 2
+    FINAL_GATHER_HIT = 2
     """It stands where that led, and counts for the vertex that the path set out from."""
 
 
 PHOTON_FACTOR_SHIFT = 8
 """Above the flags, what diffused photons are multiplied by; 0 is 1."""
 Constants("PhotonFactor", PHOTON_FACTOR_SHIFT=PHOTON_FACTOR_SHIFT)
-Constants("GatherFlags", GATHERS_BY_RAY=GatherFlag.GATHERS_BY_RAY, GATHERED_BY_RAY=GatherFlag.GATHERED_BY_RAY)
+Constants(
+    "GatherFlags", FINAL_GATHER_ORIGIN=GatherFlag.FINAL_GATHER_ORIGIN, FINAL_GATHER_HIT=GatherFlag.FINAL_GATHER_HIT
+)

@@ -24,8 +24,8 @@ from .background_denoising import POLL_SECONDS, BackgroundDenoising
 from .first_looks import FirstLooks
 from .frames import FrameWriter
 from .known_programs import KnownPrograms
+from .resolution_scaler import ResolutionScaler, at_level
 from .sessions import SessionStatus
-from .sharpness import Sharpness, at_level
 from .stand_ins import StandIns
 
 NAVIGATION_SECONDS = 1.0 / 15.0
@@ -70,7 +70,7 @@ def shown_picture(film: Film, scene: Scene) -> np.ndarray:
     return shown
 
 
-class Viewing:
+class ViewportRenderer:
     """Renders the newest scene that it was shown, slice by slice, and gives frames out."""
 
     def __init__(
@@ -100,7 +100,7 @@ class Viewing:
         self._moved_at = 0.0
         self._move_seconds = 0.0
         """When the last picture was moved into another view, and how long that took."""
-        self._moved_sharpness = Sharpness(seconds_per_pixel=1e-9)
+        self._moved_sharpness = ResolutionScaler(seconds_per_pixel=1e-9)
         self._coming: tuple[Scene, int] | None = None
         """The newest scene that the reading thread has, which is shown once the renderer takes messages again."""
         self._newest_sent = 0
@@ -109,7 +109,7 @@ class Viewing:
         """Whether there has been a frame of the renderer's own."""
         self._told_at = 0.0
         self._next_picture_at = 0.0
-        self._sharpness = Sharpness()
+        self._sharpness = ResolutionScaler()
         self._stand_ins = StandIns(library)
         self._paused = False
         self._status = SessionStatus()

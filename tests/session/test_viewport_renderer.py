@@ -14,7 +14,7 @@ from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.scene import Panorama, PanoramaKind
 from rppm_addon.scene.meshes import Dicing
 from rppm_addon.session.process.known_programs import MOST_TRIANGLES, KnownPrograms
-from rppm_addon.session.process.viewing import Viewing
+from rppm_addon.session.process.viewport_renderer import ViewportRenderer
 
 
 class Sent:
@@ -45,7 +45,7 @@ def open_viewing():
 
     def open_viewing():
         sent = Sent()
-        opened.append(Viewing(context, library, Denoiser([]), sent, known))
+        opened.append(ViewportRenderer(context, library, Denoiser([]), sent, known))
         return opened[-1], sent
 
     yield open_viewing

@@ -55,7 +55,7 @@ class CheckpointRequest:
             )
 
 
-class StillKeeper:
+class CheckpointWriter:
     """Says where a render begins, and writes its checkpoints."""
 
     def __init__(self, request: CheckpointRequest) -> None:
@@ -137,14 +137,14 @@ class StillKeeper:
             raise self._failure
 
 
-def continued_still(path: Path, scene: Scene) -> tuple[StillKeeper, "Continuation"]:
+def continued_still(path: Path, scene: Scene) -> tuple[CheckpointWriter, "Continuation"]:
     """Go on with the still that a checkpoint keeps, for whoever has a single file for it, and keep it there.
 
     What is there of another scene or with other settings is set aside, under another name, and the scene says so.
     """
     request = CheckpointRequest(path, resume=True)
     try:
-        keeper = StillKeeper(request)
+        keeper = CheckpointWriter(request)
         return keeper, keeper.begin(scene, scene.settings.iterations)
     except CheckpointError as error:
         aside = _free_name(path)
@@ -153,7 +153,7 @@ def continued_still(path: Path, scene: Scene) -> tuple[StillKeeper, "Continuatio
         except OSError as failure:
             raise CheckpointError(f"{error}; and it cannot be renamed ({failure}): choose another file") from failure
         scene.warn(f"the render begins anew, and the checkpoint of before is now {aside.name}: {error}")
-        keeper = StillKeeper(request)
+        keeper = CheckpointWriter(request)
         return keeper, keeper.begin(scene, scene.settings.iterations)
 
 

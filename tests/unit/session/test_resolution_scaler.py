@@ -5,18 +5,18 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Camera, Scene
-from rppm_addon.session.process.sharpness import COARSEST, Sharpness, at_level, scaled
+from rppm_addon.session.process.resolution_scaler import COARSEST, ResolutionScaler, at_level, scaled
 
 PIXELS = 480 * 270
 
 
 def test_nothing_is_known_at_first():
-    assert Sharpness().levels(PIXELS, 0.15)[0] == COARSEST
+    assert ResolutionScaler().levels(PIXELS, 0.15)[0] == COARSEST
 
 
 @pytest.mark.parametrize("seconds_per_pixel", [1e-9, 3e-7, 1e-6, 5e-6, 1e-4])
 def test_levels_end_at_full_sharpness_and_grow_fourfold_at_most(seconds_per_pixel):
-    sharpness = Sharpness()
+    sharpness = ResolutionScaler()
     sharpness.measure(1000, 1000 * seconds_per_pixel)
     levels = sharpness.levels(PIXELS, 0.1)
     assert levels[-1] == 1.0 and levels[0] >= COARSEST
@@ -27,13 +27,13 @@ def test_levels_end_at_full_sharpness_and_grow_fourfold_at_most(seconds_per_pixe
 
 
 def test_a_fast_device_begins_with_the_full_picture():
-    sharpness = Sharpness()
+    sharpness = ResolutionScaler()
     sharpness.measure(PIXELS, 0.02)
     assert sharpness.levels(PIXELS, 1 / 15) == [1.0]
 
 
 def test_small_differences_change_no_resolution():
-    sharpness = Sharpness()
+    sharpness = ResolutionScaler()
     chosen = []
     for seconds in (0.10, 0.11, 0.09, 0.105):
         sharpness.measure(PIXELS, seconds / 0.25)

@@ -14,7 +14,7 @@ _STEADY = 0.2
 _STEP = 2.0
 
 
-class Sharpness:
+class ResolutionScaler:
     """Chooses resolutions by what pixels have cost so far."""
 
     def __init__(self, seconds_per_pixel: float = math.inf) -> None:

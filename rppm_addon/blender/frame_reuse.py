@@ -16,7 +16,7 @@ from . import renderer_process, renderer_thread
 _last: Scene | None = None
 
 
-def follow(scene: Scene) -> Scene:
+def reuse_previous_frame(scene: Scene) -> Scene:
     """A scene that is about to be rendered, with the very members of the one before where they are equal.
 
     The renderer then knows what it need not upload again.
