@@ -67,7 +67,7 @@ def resolutions(subject: Subject, clock: Clock, quick: bool) -> dict:
 def splat_radius(subject: Subject, clock: Clock, quick: bool) -> dict:
     """Stage times by the radius of splats, all importons having it, as a factor of the automatic r_max.
 
-    The wide radius of diffused photons is multiplied by the same factor: Eq. 2 shrinks both alike.
+    The wide radius of global photons is multiplied by the same factor: Eq. 2 shrinks both alike.
     """
     scale = scale_of(clock, quick)
     points = []

@@ -5,8 +5,8 @@ import numpy as np
 
 from rppm_addon.integrator.acceleration.acceleration_structure import AccelerationStructure
 from rppm_addon.integrator.algorithm import trace_photons
+from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.iteration import Iteration
-from rppm_addon.integrator.common.living_paths import LivingPaths
 from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 
@@ -64,11 +64,11 @@ def triangles(mapper: ProgressivePhotonMapper) -> np.ndarray:
 def trace(mapper: ProgressivePhotonMapper, rays: np.ndarray) -> np.ndarray:
     gl = mapper.context.moderngl
     ray_buffer, hits = gl.buffer(rays.tobytes()), gl.buffer(reserve=HIT.size * len(rays))
-    living = LivingPaths(mapper.context, mapper._library, "rays to measure with", "take fewer")
-    living.fill(len(rays))
-    mapper.acceleration.trace(ray_buffer, hits, living)
+    active = ActivePaths(mapper.context, mapper._library, "rays to measure with", "take fewer")
+    active.fill(len(rays))
+    mapper.acceleration.trace(ray_buffer, hits, active)
     result = np.frombuffer(hits.read(), HIT.dtype)
-    for resource in (ray_buffer, hits, living):
+    for resource in (ray_buffer, hits, active):
         resource.release()
     return result
 
@@ -102,10 +102,10 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
     taken = []
     plain = AccelerationStructure.trace
 
-    def take(structure, rays, hits, living):
-        records = np.frombuffer(rays.read(RAY.size * living.most), RAY.dtype)[np.sort(living.read())]
+    def take(structure, rays, hits, active):
+        records = np.frombuffer(rays.read(RAY.size * active.most), RAY.dtype)[np.sort(active.read())]
         taken.append(records[records["maximum_distance"] > 0.0])
-        plain(structure, rays, hits, living)
+        plain(structure, rays, hits, active)
 
     AccelerationStructure.trace = take
     try:

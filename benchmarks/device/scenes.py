@@ -17,7 +17,7 @@ from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.records.rays import HIT
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.integrator.deep_cubemap.placement import radius_about
@@ -83,7 +83,7 @@ class Subject:
         self.triangle_count = mapper.triangle_count
         self.automatic_center = tuple(float(c) for c in mapper.device_scene.acceleration.center)
         self._buffers: dict[int, dict] = {}
-        self._listed = LivingPaths(self.context, library, "rays to measure with", "take fewer")
+        self._listed = ActivePaths(self.context, library, "rays to measure with", "take fewer")
 
     @property
     def geometry(self):

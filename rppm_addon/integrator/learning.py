@@ -17,7 +17,7 @@ from .density_estimation.radii import (
     fitted_wide_radius,
     most_radius_factor,
     photons_found,
-    photons_found_by_ray,
+    photons_found_by_gathering,
     radius_in_pixels,
     radius_limits,
     shrinkage,
@@ -66,7 +66,7 @@ class Learning:
         settings, camera, geometry = context.settings, context.scene.camera, context.geometry
         self._geometry = geometry
         self._alpha = settings.alpha
-        self._by_ray = context.gathers
+        self._gathers = context.gathers
         self._expected = expected_photons(context.gathers)
         self._scale = radius_in_pixels(settings, camera)
         self._most_factor = most_radius_factor(settings)
@@ -88,15 +88,15 @@ class Learning:
         leaves_little = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
         self._shares_world_light = leaves_little and pilot.uncovered_fraction >= _LEAST_UNCOVERED
         self.wide_radius = 0.0
-        """Of the first iteration, meters: what diffused photons are spread over. Known once its photons are."""
-        self.diffused_photons_found: float | None = None
-        """What photons_found, or photons_found_by_ray, says of the last iteration, if they were counted."""
+        """Of the first iteration, meters: what global photons are spread over. Known once its photons are."""
+        self.global_photons_found: float | None = None
+        """What photons_found, or photons_found_by_gathering, says of the last iteration, if they were counted."""
 
     def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
         """Radii of an iteration whose stored photons are known."""
         if iteration.number == 1:
             bounds = self._geometry.bounds_low, self._geometry.bounds_high
-            self.wide_radius = min(wide_radius(listed.diffused_count, self._expected, *bounds), self.widest_radius)
+            self.wide_radius = min(wide_radius(listed.global_photon_count, self._expected, *bounds), self.widest_radius)
         return self.radii(iteration.number)
 
     def radii(self, number: int) -> Radii:
@@ -122,17 +122,19 @@ class Learning:
         """Count which photons of an iteration contributed; ``findings``: by band, where it is learned from."""
         with context.timers.stage("learning"):
             context.lights.tally(photons.blocks, photons.slots)
-            self.diffused_photons_found = None
+            self.global_photons_found = None
             if findings:
                 taken = np.concatenate([band.photons_taken for band in findings])
                 counts = taken[at_pixels(self.leaves_importon, *self._size), 0]
-                self.diffused_photons_found = photons_found_by_ray(counts) if self._by_ray else photons_found(counts)
+                self.global_photons_found = (
+                    photons_found_by_gathering(counts) if self._gathers else photons_found(counts)
+                )
 
     @property
     def weighs_noise(self) -> bool:
         """Whether the number of photons follows the noise: without final gather all that is seen of light from other
         surfaces would be blotches of fewer photons."""
-        return self._automatic and self._by_ray
+        return self._automatic and self._gathers
 
     def weigh_noise(
         self,
@@ -164,6 +166,6 @@ class Learning:
             # Fewer photons make noise, which is weighed, and not wider disks, of which nobody would know the bias.
             expected = self._expected * min(self.photon_counts.of(number + 1) / self._photons_of_disks, 1.0)
             # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, expected, require(self.diffused_photons_found))
+            fitted = fitted_wide_radius(shrunk, expected, require(self.global_photons_found))
             self.wide_radius = min(fitted / math.sqrt(min(gain, 4.0)), self.widest_radius)
-            self.diffused_photons_found = None
+            self.global_photons_found = None

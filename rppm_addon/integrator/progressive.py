@@ -169,7 +169,7 @@ class ProgressivePhotonMapper:
 
     @property
     def splat_radii(self) -> tuple[float, float]:
-        """r_max of the current iteration and the wide radius of diffused photons, meters."""
+        """r_max of the current iteration and the wide radius of global photons, meters."""
         radii = self.learning.radii(max(self.iteration, 1)).splats
         return radii.narrow, radii.wide
 

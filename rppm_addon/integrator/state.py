@@ -26,9 +26,9 @@ class RenderState:
     photon_noise: NoiseVariances
     """What the photons to come are chosen by, where automatic."""
     wide_radius: float
-    """Of the first iteration, meters: what diffused photons are spread over."""
-    diffused_photons_found: float | None
-    """What photons_found, or photons_found_by_ray, says of the last iteration, if the next one learns from it."""
+    """Of the first iteration, meters: what global photons are spread over."""
+    global_photons_found: float | None
+    """What photons_found, or photons_found_by_gathering, says of the last iteration, if the next one learns from it."""
     radiance: np.ndarray
     """(height, width, 4) float32 mean of radiance W/(m^2 sr) and alpha, row 0 at the bottom, before exposure."""
     passes: dict[str, np.ndarray]
@@ -64,7 +64,7 @@ def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: 
         photon_counts=learning.photon_counts,
         photon_noise=learning.photon_noise,
         wide_radius=learning.wide_radius,
-        diffused_photons_found=learning.diffused_photons_found,
+        global_photons_found=learning.global_photons_found,
         radiance=film.read_radiance(),
         passes=film.read_passes(),
         pass_counts=film.read_pass_counts(),
@@ -108,4 +108,4 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
     stages.caustic_radii.restore(state.radius_factors)
     learning.photon_counts, learning.photon_noise = state.photon_counts, state.photon_noise
     learning.rest = state.rest
-    learning.wide_radius, learning.diffused_photons_found = state.wide_radius, state.diffused_photons_found
+    learning.wide_radius, learning.global_photons_found = state.wide_radius, state.global_photons_found

@@ -10,7 +10,7 @@ from ..gl.context import Context
 from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..integrator.acceleration.acceleration_structure import AccelerationStructure
-from ..integrator.common.living_paths import LivingPaths
+from ..integrator.common.active_paths import ActivePaths
 from ..integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 from ..integrator.deep_cubemap.deep_cubemap import DeepCubemap
 
@@ -56,7 +56,7 @@ class TracedTriangles:
         self.structure = structure or DeepCubemap(
             context, library, rasterize, texel_buffers=texel_buffers, most_clustered=most_clustered
         )
-        self._rays = LivingPaths(context, library, "rays of a test", "take fewer")
+        self._rays = ActivePaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)
 
     def build(self, resolution: int) -> None:
@@ -78,12 +78,12 @@ class TracedTriangles:
             return self._run(
                 rays,
                 np.dtype(np.uint32),
-                self._of_all(lambda queried, free, living: self.structure.occluded(queried, ends, free, living)),
+                self._of_all(lambda queried, free, active: self.structure.occluded(queried, ends, free, active)),
             )
         finally:
             ends.release()
 
-    def _of_all(self, operation: Callable[[moderngl.Buffer, moderngl.Buffer, LivingPaths], None]) -> _Operation:
+    def _of_all(self, operation: Callable[[moderngl.Buffer, moderngl.Buffer, ActivePaths], None]) -> _Operation:
         def run(ray_buffer: moderngl.Buffer, result_buffer: moderngl.Buffer, count: int) -> None:
             self._rays.fill(count)
             operation(ray_buffer, result_buffer, self._rays)

@@ -35,7 +35,7 @@ from .continuation import Pause
 if TYPE_CHECKING:
     import OpenEXR
 
-FORMAT = 7
+FORMAT = 8
 _ATTRIBUTE = "rppm.checkpoint"
 _MARK = b"RPPM-SHA-256"
 _TRAILER = len(_MARK) + 32
@@ -71,7 +71,7 @@ class CheckpointSummary:
     photon_counts: PhotonCounts
     photon_noise: NoiseVariances
     wide_radius: float
-    diffused_photons_found: float | None
+    global_photons_found: float | None
     device: str
     radius_meters: float
     seconds: float
@@ -95,7 +95,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         state.photon_counts,
         state.photon_noise,
         state.wide_radius,
-        state.diffused_photons_found,
+        state.global_photons_found,
         pause.device,
         pause.radius_meters,
         seconds,
@@ -155,7 +155,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             summary.photon_counts,
             summary.photon_noise,
             summary.wide_radius,
-            summary.diffused_photons_found,
+            summary.global_photons_found,
             layer(*"RGBA"),
             {entry.name: layer(*entry.layers) for entry in passes if entry.comes_of_iterations},
             layer(*_COUNTS) if _COUNTS[0] in film else np.zeros((0, 0, 2), np.uint32),

@@ -5,7 +5,7 @@
 // lint: TRAVERSAL=bvh/traverse.glsl
 // Whether each ray is free (1) or meets something (0) that is not the triangle that it goes to.
 layout(local_size_x = 64) in;
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #define SHADOW_RAYS
 #include TRAVERSAL
 
@@ -14,7 +14,7 @@ restrict writeonly buffer Visibility;
 restrict readonly buffer LightTriangles;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];

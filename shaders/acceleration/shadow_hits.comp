@@ -5,7 +5,7 @@
 // lint: TRAVERSAL=bvh/traverse.glsl
 // The nearest hit of each shadow ray on what casts shadows.
 layout(local_size_x = 64) in;
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #define SHADOW_RAYS
 #define NEAREST_SHADOW
 #include TRAVERSAL
@@ -15,7 +15,7 @@ restrict writeonly buffer Hits;
 restrict readonly buffer LightTriangles;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];

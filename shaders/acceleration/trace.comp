@@ -6,14 +6,14 @@
 // lint: TRAVERSAL=bvh/traverse.glsl
 // The nearest hit of each ray.
 layout(local_size_x = 64) in;
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include TRAVERSAL
 
 restrict readonly buffer Rays;
 restrict writeonly buffer Hits;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     hits[index] = nearest_hit(ray);

@@ -3,7 +3,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
-// How much of the disk in which diffused photons count lies on surfaces, where a gathering ray ends: short rays across
+// How much of the disk in which global photons count lies on surfaces, where a gathering ray ends: short rays across
 // the disk, until one meets surface. Their number has the mean 1 / part (Booth, Unbiased Monte Carlo Estimation of the
 // Reciprocal of an Integral, 2007), which is what the photons there have to be multiplied by.
 
@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 #include <CoverageParameters>
 #include <Coverage>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/sampling.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
@@ -100,16 +100,16 @@ RandomSequence random_of(uint index) {
                            parameters.first_pixel + index);
 }
 
-bool takes_diffused_photons(uint index) {
+bool takes_global_photons(uint index) {
     return importons[index].radius > 0.0
            && (importons[index].gathers & (FINAL_GATHER_HIT | FINAL_GATHER_ORIGIN)) == FINAL_GATHER_HIT;
 }
 
 void main() {
-    uint index = living_path(), thread = gl_LocalInvocationIndex;
+    uint index = active_path(), thread = gl_LocalInvocationIndex;
     if (thread == 0u) pending_count = 0u;
     barrier();
-    if (index != NO_PATH && takes_diffused_photons(index)) {
+    if (index != NO_PATH && takes_global_photons(index)) {
         Disk disk = disk_of(index);
         RandomSequence random = random_of(index);
         if (!is_on_triangle(disk, point_on(disk, random))) pending[atomicAdd(pending_count, 1u)] = index;

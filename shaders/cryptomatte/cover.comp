@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 #include <CryptomatteParameters>
 #include <CryptomatteNames>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 uniform Parameters { CryptomatteParameters parameters; };
@@ -46,7 +46,7 @@ void cover(uint identifier, float share) {
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     first = parameters.pair_count * index;
     bool any_catchers = parameters.any_catchers != 0u;

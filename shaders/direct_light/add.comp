@@ -4,14 +4,14 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 readonly buffer Visibility;
 readonly buffer Contributions;
 buffer Radiances;
 buffer GatherRadiances;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     vec4 contribution = contributions[index];
     if (visibility[index] == 0u) return;

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <Hit>
 #include "common/constants.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 readonly buffer Hits;
 readonly buffer Attributes;
 readonly buffer Materials;
@@ -15,7 +15,7 @@ buffer ShadowRays;
 writeonly buffer Visibility;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     uint triangle = hits[index].triangle;
     bool free = triangle == NO_TRIANGLE;

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include "common/iteration.glsl"
 #include "common/constants.glsl"
 #include "common/geometry.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/path_depth.glsl"
 #include <CameraPath>
 #include <PassSurfaceParameters>
@@ -22,7 +22,7 @@ buffer Contributions;
 readonly buffer CameraPaths;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     uint surfaces = transparents_of(camera_paths[index].depth) + parameters.passed;
     vec3 passed = surfaces < iteration.transparent_max_bounces ? closures[index].transparent : vec3(0.0);

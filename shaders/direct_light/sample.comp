@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 #include <DirectLightParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -234,7 +234,7 @@ void leave_no_light(uint index) {
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     leave_no_light(index);
     Ray ray = rays[index];

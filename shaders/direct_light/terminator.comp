@@ -6,7 +6,7 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/geometry.glsl"
 #include <ShadingInstance>
@@ -57,7 +57,7 @@ float moved_fraction(float cutoff, float shading_cosine, float geometric_cosine)
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Ray ray = shadow_rays[index];
     uint triangle = ray.source_triangle;

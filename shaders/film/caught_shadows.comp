@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <PassParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 uniform Parameters { PassParameters parameters; };
@@ -17,7 +17,7 @@ readonly buffer CameraPaths;
 readonly buffer CatcherVisibility;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
     bool catches = closure_hit(closures[index]) && (closures[index].flags & CLOSURE_CATCHES_SHADOWS) != 0u;
     if (!catches || (camera_paths[index].flags & PATH_CAMERA_TRANSPARENT) == 0u) return;

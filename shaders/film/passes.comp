@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 
 #include <PassParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "film/first_surface.glsl"
@@ -146,7 +146,7 @@ void add_colors(CameraPath path, Closure closure, vec3 viewer) {
 }
 
 void main() {
-    index = living_path();
+    index = active_path();
     if (index == NO_PATH) return;
     if (parameters.segment == 0u) begin_iteration();
     bool keeps_paths = parameters.keeps_paths != 0u;

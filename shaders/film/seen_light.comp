@@ -6,14 +6,14 @@
 layout(local_size_x = 64) in;
 
 #include <PassParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { PassParameters parameters; };
 #include "light_passes/light_passes.glsl"
 readonly buffer Importons;
 readonly buffer Radiances;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     vec4 before = pass_paths[index];
     uint path = floatBitsToUint(before.w);

@@ -23,5 +23,5 @@ float vertex_radius(inout CameraPath path, vec3 direction, Closure closure) {
 // Of photons that only specular surfaces have scattered, if any; index: in the band.
 float caustic_radius_of(uint index, float radius, bool gathered) {
     float factor = iteration.number <= 1u ? iteration.most_radius_factor : radius_factors[index];
-    return gathered ? max(radius, iteration.radius_by_ray) : factor * radius;
+    return gathered ? max(radius, iteration.final_gather_radius) : factor * radius;
 }

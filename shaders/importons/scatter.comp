@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 
 #include <ScatterImportonsParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -333,7 +333,7 @@ void go_on(uint index, CameraPath path, Ray ray, Closure closure, LobeSelection 
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     CameraPath path = camera_paths[index];
     Ray ray = rays[index];

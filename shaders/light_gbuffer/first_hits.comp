@@ -11,7 +11,7 @@ uniform Parameters { FirstHitsParameters parameters; };
 #include "lights/light_table.glsl"
 #define TEXELS_ACCESS readonly
 #include "light_gbuffer/views.glsl"
-#include "living_paths/kept.glsl"
+#include "active_paths/kept.glsl"
 #include "acceleration/triangles.glsl"
 readonly buffer Rays;
 writeonly buffer Hits;

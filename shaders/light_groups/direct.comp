@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
 readonly buffer Visibility;
@@ -17,7 +17,7 @@ readonly buffer Attributes;
 #include "light_groups/table.glsl"
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || visibility[index] == 0u) return;
     vec4 contribution = contributions[index];
     uint group = light_group(light_splits[index].light, light_triangles[index]);

@@ -3,6 +3,6 @@
 // of splat_sums/sums.glsl.
 #include <LightGroups>
 
-uint first_group_word(uint pixel, uint group, bool by_ray, uint groups) {
-    return 12u * (groups * pixel + group) + (by_ray ? 6u : 0u);
+uint first_group_word(uint pixel, uint group, bool final_gather, uint groups) {
+    return 12u * (groups * pixel + group) + (final_gather ? 6u : 0u);
 }

@@ -4,17 +4,17 @@
 #include <LightGroups>
 buffer GroupedLight;
 
-uint grouped_place(uint pixel, uint group, bool by_ray) {
-    return 6u * (parameters.groups * pixel + group) + (by_ray ? 3u : 0u);
+uint grouped_place(uint pixel, uint group, bool final_gather) {
+    return 6u * (parameters.groups * pixel + group) + (final_gather ? 3u : 0u);
 }
 
-vec3 grouped_light_of(uint pixel, uint group, bool by_ray) {
-    uint place = grouped_place(pixel, group, by_ray);
+vec3 grouped_light_of(uint pixel, uint group, bool final_gather) {
+    uint place = grouped_place(pixel, group, final_gather);
     return vec3(grouped_light[place], grouped_light[place + 1u], grouped_light[place + 2u]);
 }
 
-void add_to_group(uint pixel, uint group, bool by_ray, vec3 light) {
+void add_to_group(uint pixel, uint group, bool final_gather, vec3 light) {
     if (group == NO_LIGHT_GROUP) return;
-    uint place = grouped_place(pixel, group, by_ray);
+    uint place = grouped_place(pixel, group, final_gather);
     for (uint channel = 0u; channel < 3u; ++channel) grouped_light[place + channel] += light[channel];
 }

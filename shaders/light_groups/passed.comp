@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <PassedLightParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
@@ -35,7 +35,7 @@ void add_passed_light(uint light, vec3 radiance) {
 #include "importons/scatter_point.glsl"
 
 void main() {
-    path_index = living_path();
+    path_index = active_path();
     if (path_index == NO_PATH) return;
     Ray ray = rays[path_index];
     vec3 passed = vec3(0.0);

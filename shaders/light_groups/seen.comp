@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 #include <LightGroupParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 uniform Parameters { LightGroupParameters parameters; };
 #include "light_groups/grouped.glsl"
@@ -18,7 +18,7 @@ readonly buffer Attributes;
 #include "light_groups/table.glsl"
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     uint triangle = closures[index].triangle;
     uint group = triangle == NO_TRIANGLE ? iteration.world_group : light_group(0u, triangle);

@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightPassParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { LightPassParameters parameters; };
 #include "light_passes/light_passes.glsl"
 readonly buffer Visibility;
@@ -15,7 +15,7 @@ readonly buffer Importons;
 buffer FoundCaustics;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     if (visibility[index] == 0u) return;
     vec4 contribution = contributions[index];

@@ -25,7 +25,7 @@ void main() {
     if (parameters.scattered != 0u)
         found_direct[index] = vec4((history & HISTORY_AGAIN) == 0u ? world : vec3(0.0), 0.0);
     if (parameters.caustics == 0u) return;
-    vec3 caustic = read_light_sum(index, CAUSTICS_BY_RAY, parameters.light_sums) * parameters.quantum;
+    vec3 caustic = read_light_sum(index, FINAL_GATHER_CAUSTICS, parameters.light_sums) * parameters.quantum;
     if ((history & HISTORY_CAUSTIC) != 0u) caustic += world;
     found_caustics[index].rgb += caustic;
 }

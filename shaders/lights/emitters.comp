@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include <Hit>
 #include <EmittersParameters>
 #include "common/constants.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { EmittersParameters parameters; };
 readonly buffer Rays;
 readonly buffer LightTriangles;
@@ -18,7 +18,7 @@ writeonly buffer EmitterRays { Ray emitter_rays[]; };
 writeonly buffer EmitterHits { Hit emitter_hits[]; };
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Ray ray = rays[index];
     bool photons = parameters.photons != 0u;

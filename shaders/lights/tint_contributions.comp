@@ -7,12 +7,12 @@ layout(local_size_x = 64) in;
 
 
 #include "common/constants.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 readonly buffer Closures;
 buffer Contributions;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || closures[index].triangle == NO_TRIANGLE) return;
     contributions[index].rgb *= closures[index].emission;
 }

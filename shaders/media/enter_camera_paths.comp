@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 #include <EnterMediaParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/camera_path.glsl"
 uniform Parameters { EnterMediaParameters parameters; };
 readonly buffer MediaOfSources;
@@ -32,7 +32,7 @@ uint media_before(Ray ray, uint triangle) {
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
     Ray ray = rays[index];
     uint media = parameters.has_camera == 0u

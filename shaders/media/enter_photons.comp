@@ -9,7 +9,7 @@
 layout(local_size_x = 64) in;
 
 #include <EnterMediaParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { EnterMediaParameters parameters; };
 readonly buffer MediaOfSources;
 readonly buffer Attributes;
@@ -23,7 +23,7 @@ readonly buffer Materials;
 #include "media/crossings.glsl"
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || !(rays[index].maximum_distance > 0.0)) return;
     uint source = light_of(index), kind = lights[source].kind;
     if (kind == LIGHT_SUN || kind == LIGHT_WORLD) return;

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <MotionVectorParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/finite.glsl"
@@ -62,7 +62,7 @@ vec4 vector_at(Hit hit) {
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     bool first = iteration.number_in_film == 1u && parameters.segment == 0u;
     if (first) motion_vectors[index] = vec4(0.0);

@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "lights/light_table.glsl"
 #include <Lights>
 #include <LightFlags>
@@ -18,7 +18,7 @@ readonly buffer Hits;
 buffer PhotonPaths;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Light light = lights[light_of(index)];
     const uint cut = LIGHT_SOFT | LIGHT_HOLDS_SURFACES;

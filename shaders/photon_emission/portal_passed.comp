@@ -7,7 +7,7 @@
 layout(local_size_x = 64) in;
 
 #include <PhotonFlags>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "lights/lights.glsl"
 readonly buffer Rays;
 readonly buffer Hits;
@@ -15,7 +15,7 @@ readonly buffer PhotonPaths;
 buffer PhotonOrigins;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || (photon_paths[index].flags & PHOTON_DIRECT) == 0u) return;
     if (lights[light_of(index)].kind != LIGHT_WORLD) return;
     Ray ray = rays[index];

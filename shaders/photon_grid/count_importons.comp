@@ -5,14 +5,14 @@
 layout(local_size_x = 64) in;
 
 #include <GroupParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "photon_grid/cells.glsl"
 uniform Parameters { GroupParameters parameters; };
 readonly buffer Importons;
 buffer Buckets;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || !(importons[index].radius > 0.0)) return;
     atomicAdd(buckets[bucket_of(cell_of(importons[index].position, parameters.side), parameters.buckets)].y, 1u);
 }

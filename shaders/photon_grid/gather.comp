@@ -63,7 +63,7 @@ void main() {
     if (index >= visit_count) return;
     uvec2 visit = visits[index];
     Importon importon = importons[visit.x];
-    // Corners of caustic cells, then of those of diffused photons, then of those of indirect ones.
+    // Corners of caustic cells, then of those of global photons, then of those of indirect ones.
     uint corner = parameters.caustics != 0u ? 0u : CORNERS;
     uint corners = (importon.gathers & FINAL_GATHER_ORIGIN) == 0u && wide_in_use[1] != 0u ? 3u * CORNERS
                    : wide_in_use[0] != 0u                                                 ? 2u * CORNERS

@@ -6,7 +6,7 @@
 #include "photon_grid/cells.glsl"
 
 #include <PhotonGrids>
-const uint GRID_DIFFUSED = CAUSTIC_GRIDS, GRID_INDIRECT = CAUSTIC_GRIDS + 1u;
+const uint GRID_GLOBAL = CAUSTIC_GRIDS, GRID_INDIRECT = CAUSTIC_GRIDS + 1u;
 
 float side_of(uint grid) { return grid < CAUSTIC_GRIDS ? parameters.caustic_sides[grid] : parameters.wide_side; }
 
@@ -19,5 +19,5 @@ uint bucket_in(uint grid, ivec3 cell) {
 // The first and the last grid that a photon lies in.
 uvec2 grids_of(uint photon_flags) {
     if ((photon_flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) return uvec2(0u, CAUSTIC_GRIDS - 1u);
-    return uvec2((photon_flags & PHOTON_INDIRECT) != 0u ? GRID_INDIRECT : GRID_DIFFUSED);
+    return uvec2((photon_flags & PHOTON_INDIRECT) != 0u ? GRID_INDIRECT : GRID_GLOBAL);
 }

@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <GroupParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "photon_grid/cells.glsl"
 uniform Parameters { GroupParameters parameters; };
 readonly buffer Importons;
@@ -13,7 +13,7 @@ buffer Buckets;
 writeonly buffer Visits;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (invocation_index() == 0u) {
         visit_count = cursor;
         visit_groups = uint[3]((cursor + parameters.group_size - 1u) / parameters.group_size, 1u, 1u);

@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 
 #include <LightLink>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/photon.glsl"
 #include "common/light_sets.glsl"
 #include "common/bsdf/closure.glsl"
@@ -17,7 +17,7 @@ readonly buffer LightLinks;
 readonly buffer Triangles;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || (photon_paths[index].flags & PHOTON_DIRECT) == 0u) return;
     uint triangle = closures[index].triangle;
     if (triangle == NO_TRIANGLE) return;

@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/photon.glsl"
 readonly buffer Closures;
 #include "photons/parts.glsl"
@@ -19,13 +19,13 @@ readonly buffer AdjointQueries;
 readonly buffer PhotonRange;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     vec3 flux = photon_paths[index].flux, viewer = -rays[index].direction;
     if (!(largest(flux) > 0.0)) return;
     AdjointQuery query = adjoint_queries[index];
     if (query.part != PART_NONE) {
-        vec3 arrival = photons[photon_first + living_place()].direction;
+        vec3 arrival = photons[photon_first + active_place()].direction;
         float ior = query.part == PART_SHARP_TRANSMITTING ? 1.0 / query.ior : 1.0;
         vec3 share = part_share(index, closures[index], query.part, ior, viewer, arrival);
         // What is too little to be compared stays as it is.

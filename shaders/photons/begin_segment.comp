@@ -5,12 +5,12 @@
 layout(local_size_x = 64) in;
 
 #include <BeginSegmentParameters>
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { BeginSegmentParameters parameters; };
 buffer PhotonRange;
 
 void main() {
-    if (living_place() != 0u) return;
+    if (active_place() != 0u) return;
     photon_first = parameters.segment == 0u ? 0u : photon_end;
-    photon_end = photon_first + living.count;
+    photon_end = photon_first + active_header.count;
 }

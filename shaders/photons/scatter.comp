@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 
 #include <ScatterPhotonsParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/random.glsl"
 #include "common/photon.glsl"
 uniform Parameters { ScatterPhotonsParameters parameters; };
@@ -240,9 +240,9 @@ void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neigh
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
-    uint slot = photon_first + living_place(), number = index | parameters.segment << PHOTON_SEGMENT_SHIFT;
+    uint slot = photon_first + active_place(), number = index | parameters.segment << PHOTON_SEGMENT_SHIFT;
     vec3 carried = photon_paths[index].flux;
     Ray ray = rays[index];
     rays[index].maximum_distance = 0.0;

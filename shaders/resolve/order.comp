@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include "common/constants.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 readonly buffer Rays;
 readonly buffer Hits;
 readonly buffer Attributes;
@@ -13,7 +13,7 @@ readonly buffer Materials;
 #include "resolve/ranges.glsl"
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     uint triangle = hits[index].triangle;
     if (!(rays[index].maximum_distance > 0.0) || triangle == NO_TRIANGLE) return;

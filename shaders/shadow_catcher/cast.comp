@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <ShadowCatcherParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/random.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/light_sets.glsl"
@@ -24,7 +24,7 @@ writeonly buffer LightTriangles;
 const int CANDIDATES = 64;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     Ray none = Ray(vec3(0.0), NO_TRIANGLE, vec3(0.0, 0.0, 1.0), 0.0);
     shadow_rays[index] = none;

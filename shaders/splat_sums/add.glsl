@@ -22,15 +22,15 @@ void add_signed_quanta(uint place, float quanta) {
 // Threads that meet here write the same mark.
 void add_splat(uint importon, uint photon, vec3 radiance, uint stands_for) {
     photons[photon].depth = photons[photon].depth | PHOTON_CONTRIBUTED;
-    bool by_ray = (importons[importon].gathers & FINAL_GATHER_HIT) != 0u;
-    uint place = first_word(importon, by_ray);
+    bool final_gather = (importons[importon].gathers & FINAL_GATHER_HIT) != 0u;
+    uint place = first_word(importon, final_gather);
     add_quanta(place, radiance.r * parameters.quanta);
     add_quanta(place + 2u, radiance.g * parameters.quanta);
     add_quanta(place + 4u, radiance.b * parameters.quanta);
     if (parameters.counting == 0u) return;
     float quanta = luminance(radiance) * parameters.quanta;
-    add_signed_quanta(signed_place(importon, by_ray), photon_sign(photons[photon].path) * quanta);
+    add_signed_quanta(signed_place(importon, final_gather), photon_sign(photons[photon].path) * quanta);
     if ((photons[photon].flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u)
-        atomicAdd(photon_counts[diffused_place(importon)], 1u);
-    else if (!by_ray) atomicAdd(photon_counts[caustic_place(importon)], stands_for);
+        atomicAdd(photon_counts[global_photon_place(importon)], 1u);
+    else if (!final_gather) atomicAdd(photon_counts[caustic_place(importon)], stands_for);
 }

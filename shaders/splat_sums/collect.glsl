@@ -38,15 +38,15 @@ void write_words(uint place, uvec2 added) {
     sum_words[place + 1u] = sum.y;
 }
 
-void write_collected(uint importon, bool by_ray, Collected collected) {
-    uint place = first_word(importon, by_ray);
+void write_collected(uint importon, bool final_gather, Collected collected) {
+    uint place = first_word(importon, final_gather);
     write_words(place, collected.red);
     write_words(place + 2u, collected.green);
     write_words(place + 4u, collected.blue);
     if (parameters.counting == 0u) return;
-    if (collected.diffused > 0u) photon_counts[diffused_place(importon)] += collected.diffused;
-    if (!by_ray && collected.caustic > 0u) photon_counts[caustic_place(importon)] += collected.caustic;
-    place = signed_place(importon, by_ray);
+    if (collected.diffused > 0u) photon_counts[global_photon_place(importon)] += collected.diffused;
+    if (!final_gather && collected.caustic > 0u) photon_counts[caustic_place(importon)] += collected.caustic;
+    place = signed_place(importon, final_gather);
     uvec2 sum = uvec2(photon_counts[place], photon_counts[place + 1u]);
     add_words(sum, collected.with_signs);
     photon_counts[place] = sum.x;

@@ -28,9 +28,9 @@ void add_group_word(uint place, float quanta) {
     if (added.y > 0u) atomicAdd(group_words[place + 1u], added.y);
 }
 
-void add_to_group_sum(uint pixel, uint group, bool by_ray, vec3 radiance) {
+void add_to_group_sum(uint pixel, uint group, bool final_gather, vec3 radiance) {
     if (group == NO_LIGHT_GROUP) return;
-    uint place = first_group_word(pixel, group, by_ray, parameters.light_groups);
+    uint place = first_group_word(pixel, group, final_gather, parameters.light_groups);
     for (uint channel = 0u; channel < 3u; ++channel)
         add_group_word(place + 2u * channel, radiance[channel] * parameters.quanta);
 }
@@ -45,7 +45,7 @@ struct LightPart {
 LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate estimate) {
     uint history = arrived_history(importon.history), first = first_scatter(history);
     uint scatter = lobe_scatter(unpack_kind(importon.lobe_kind), !estimate.front);
-    bool diffuse_lobe = scatter == SCATTER_DIFFUSE, by_ray = (importon.gathers & FINAL_GATHER_HIT) != 0u;
+    bool diffuse_lobe = scatter == SCATTER_DIFFUSE, final_gather = (importon.gathers & FINAL_GATHER_HIT) != 0u;
     vec3 diffuse = diffuse_lobe ? estimate.radiance : estimate.diffuse;
     vec3 lobe = estimate.radiance - diffuse;
     if (part == 2u) {
@@ -53,10 +53,10 @@ LightPart light_part(uint part, Importon importon, uint photon_flags, Estimate e
         vec3 caustic = vec3(0.0);
         if (is_caustic || (photon_flags & PHOTON_SCATTERED_BY_LOBE) != 0u) caustic += diffuse;
         if (is_caustic || (history & HISTORY_DIFFUSE) != 0u) caustic += lobe;
-        return LightPart(by_ray ? CAUSTICS_BY_RAY : CAUSTICS_SUM, caustic);
+        return LightPart(final_gather ? FINAL_GATHER_CAUSTICS : CAUSTICS_SUM, caustic);
     }
     bool indirect = (photon_flags & (PHOTON_SCATTERED_BY_LOBE | PHOTON_INDIRECT)) != 0u, of_diffuse = part == 0u;
-    if (by_ray) return LightPart(0u, vec3(0.0));
+    if (final_gather) return LightPart(0u, vec3(0.0));
     if (first != SCATTER_NONE) return LightPart(scattered_sum(first, true), of_diffuse ? estimate.radiance : vec3(0.0));
     if (of_diffuse) return LightPart(scattered_sum(SCATTER_DIFFUSE, indirect), diffuse);
     return LightPart(scattered_sum(scatter, indirect), diffuse_lobe ? vec3(0.0) : lobe);

@@ -8,16 +8,16 @@
 const float WORD = 4294967296.0;
 const float MOST_QUANTA = 4611686018427387904.0;  // 2^62
 
-uint first_word(uint pixel, bool by_ray) { return 12u * pixel + (by_ray ? 6u : 0u); }
+uint first_word(uint pixel, bool final_gather) { return 12u * pixel + (final_gather ? 6u : 0u); }
 
-// Where the photons are counted that a pixel takes: diffused ones, and caustic ones that its disk holds by those taken,
+// Where the photons are counted that a pixel takes: global ones, and caustic ones that its disk holds by those taken,
 // but for those at the ends of gathering rays. Behind them lie two signed sums of 64 bits.
-uint diffused_place(uint pixel) { return 6u * pixel; }
+uint global_photon_place(uint pixel) { return 6u * pixel; }
 uint caustic_place(uint pixel) { return 6u * pixel + 1u; }
 
 // Where the luminance of what photons add is summed with a random sign for each photon path: with independent signs the
 // sum's square has the mean of the sum of squares, the variance of what photons bring for given camera paths.
-uint signed_place(uint pixel, bool by_ray) { return 6u * pixel + (by_ray ? 4u : 2u); }
+uint signed_place(uint pixel, bool final_gather) { return 6u * pixel + (final_gather ? 4u : 2u); }
 
 // Low and high word of a number of quanta, rounded; of negative ones the two's complement.
 uvec2 whole_quanta(float signed_quanta) {

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <CubeParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "splatting/cube.glsl"
 uniform Parameters { CubeParameters parameters; };
 buffer Importons;
@@ -15,7 +15,7 @@ buffer Heads;
 buffer Core;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     if (!(importons[index].radius > 0.0)) return;
     vec3 p = importons[index].position - parameters.center;

@@ -26,6 +26,6 @@ void main() {
         && !(photon_origins[photon_path_of(photons[index].path)].radiance > 0.0))
         return;
     stored_photons[atomicAdd(stored_count, 1u)] = index;
-    if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(diffused_count, 1u);
+    if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) atomicAdd(global_photon_count, 1u);
     if ((flags & PHOTON_INDIRECT) != 0u) atomicAdd(indirect_count, 1u);
 }

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <EnterParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/low_discrepancy.glsl"
 uniform Parameters { EnterParameters parameters; };
 readonly buffer Closures;
@@ -40,7 +40,7 @@ void scale_lobes(inout Closure closure, float factor) {
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     walk_rays[index].maximum_distance = 0.0;
     Closure closure = closures[index];

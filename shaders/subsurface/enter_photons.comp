@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 #include <EnterParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 uniform Parameters { EnterParameters parameters; };
 readonly buffer Closures;
 #include "photons/parts.glsl"
@@ -15,7 +15,7 @@ readonly buffer AdjointQueries;
 #include "subsurface/entry.glsl"
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     walk_rays[index].maximum_distance = 0.0;
     vec3 flux = photon_paths[index].flux;

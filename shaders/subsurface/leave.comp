@@ -4,13 +4,13 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 writeonly buffer ExitClosures;
 #include "subsurface/exit.glsl"
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH || exit_hits[index].triangle == NO_TRIANGLE) return;
     Exit found = exit_of(index);
     uint shading = pack_unit_vector(found.shading);

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 #include <EnterParameters>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/random.glsl"
 #include "common/sampling.glsl"
 uniform Parameters { EnterParameters parameters; };
@@ -20,7 +20,7 @@ writeonly buffer Hits;
 readonly buffer Closures;
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     vec3 flux = largest(photon_paths[index].flux) * subsurface_walks[index].throughput;
     Hit hit = exit_hits[index];

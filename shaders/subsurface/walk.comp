@@ -14,7 +14,7 @@ layout(local_size_x = 64) in;
 #include <WalkParameters>
 #include <SubsurfaceWalk>
 #include "common/iteration.glsl"
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 #include "common/sampling.glsl"
 #include "common/random.glsl"
 uniform Parameters { WalkParameters parameters; };
@@ -154,7 +154,7 @@ bool step_on(uint step, inout SubsurfaceWalk walk, inout Ray ray, inout RandomSe
 }
 
 void main() {
-    uint index = living_path();
+    uint index = active_path();
     if (index == NO_PATH) return;
     SubsurfaceWalk walk = subsurface_walks[index];
     Ray ray = walk_rays[index];

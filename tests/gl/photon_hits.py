@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.iteration import Iteration
-from rppm_addon.integrator.common.living_paths import LivingPaths
 from rppm_addon.integrator.common.records.rays import HIT
 from rppm_addon.integrator.stages.light_gbuffer import LightGBuffer
 from rppm_addon.integrator.stages.photon_emission import PhotonEmission
@@ -18,14 +18,14 @@ def both_hits(mapper, library, scene: Scene) -> tuple[np.ndarray, np.ndarray, fl
     context, photons = mapper.device_scene.context, mapper.stages.photons
     rays, hits = photons._rays.buffer, photons._hits
     count, lights = scene.settings.photons, context.lights
-    photons._living.fill(count)
+    photons._active.fill(count)
     context.begin(Iteration(2, seed=3))
     PhotonEmission(library).emit(context, photons.blocks, count)
-    context.acceleration.trace(rays, hits.buffer, photons._living)
+    context.acceleration.trace(rays, hits.buffer, photons._active)
     traced = hits.read(HIT.dtype, count).copy()
     hits.clear()
     gbuffer = LightGBuffer(mapper.context, library)
-    left = LivingPaths(mapper.context, library, "left", "")
+    left = ActivePaths(mapper.context, library, "left", "")
     geometry = context.geometry
     gbuffer.build(lights.table, geometry.center, lights.scene_radius, geometry)
     gbuffer.find(context.blocks, rays, hits.buffer, count, left)

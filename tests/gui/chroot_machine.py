@@ -81,7 +81,7 @@ class ChrootMachine:
         self._ask("kill", pid=pid)
 
     def processes(self) -> dict[int, list[str]]:
-        """Command lines of the living processes, without keeper.py."""
+        """Command lines of the active processes, without keeper.py."""
         return {int(pid): command for pid, command in self._ask("processes")["processes"].items()}
 
     def shared_memory(self) -> list[str]:
@@ -89,7 +89,7 @@ class ChrootMachine:
         return self._ask("shared_memory")["names"]
 
     def resources(self, *folders: str) -> dict[str, dict]:
-        """What each living process holds, by its number, and the bytes of the files in folders, by their paths."""
+        """What each active process holds, by its number, and the bytes of the files in folders, by their paths."""
         return self._ask("resources", folders=list(folders))
 
     def busy_share(self, pid: int, seconds: float) -> float:

@@ -8,7 +8,7 @@ import moderngl
 from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
-from ..common.living_paths import LivingPaths
+from ..common.active_paths import ActivePaths
 from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
 from ..common.records.triangles import TRIANGLE_VERTICES  # noqa: F401  likewise
 
@@ -63,43 +63,43 @@ class AccelerationStructure(BufferSet):
         one_sided: dict[str, object] = {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else {}
         return {"TRAVERSAL": self.shader, **one_sided}
 
-    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
-        """Find the nearest hits of the living paths' Ray records; writes Hit records.
+    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths) -> None:
+        """Find the nearest hits of the active paths' Ray records; writes Hit records.
 
         A hit at just maximum_distance counts, one at distance 0 does not. Where nothing is hit,
         triangle is NO_TRIANGLE and the rest without meaning.
         """
-        self._trace("acceleration/trace.comp", {"Rays": rays, "Hits": hits}, living)
+        self._trace("acceleration/trace.comp", {"Rays": rays, "Hits": hits}, active)
 
     def occluded(
         self,
         rays: moderngl.Buffer,
         targets: moderngl.Buffer,
         visibility: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         linking: Mapping[str, moderngl.Buffer] | None = None,
     ) -> None:
-        """Write a uint for the Ray record of each living path: 1 where trace would hit nothing, else 0.
+        """Write a uint for the Ray record of each active path: 1 where trace would hit nothing, else 0.
 
         targets: of each, the triangle that the ray goes to, which does not count, or NO_TRIANGLE; uint.
         linking: the buffers Contributions and LightLinks, where these say what may be in a ray's way.
         """
         kernel = "acceleration/occluded_linked.comp" if linking else "acceleration/occluded.comp"
         buffers = {"Rays": rays, "LightTriangles": targets, "Visibility": visibility, **(linking or {})}
-        self._trace(kernel, buffers, living)
+        self._trace(kernel, buffers, active)
 
     def shadow_hits(
         self,
         rays: moderngl.Buffer,
         targets: moderngl.Buffer,
         hits: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         linking: Mapping[str, moderngl.Buffer] | None = None,
     ) -> None:
         """Find the nearest hits of shadow rays as trace does, of what counts for occluded."""
         kernel = "acceleration/shadow_hits_linked.comp" if linking else "acceleration/shadow_hits.comp"
-        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, living)
+        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, active)
 
-    def _trace(self, kernel: str, buffers: Mapping[str, moderngl.Buffer], living: LivingPaths) -> None:
+    def _trace(self, kernel: str, buffers: Mapping[str, moderngl.Buffer], active: ActivePaths) -> None:
         program = self._library.compute(kernel, self.traversal_defines)
-        living.run(program, {**self.traversal_buffers, **buffers})
+        active.run(program, {**self.traversal_buffers, **buffers})

@@ -79,15 +79,15 @@ class NoiseSamples:
     """That and what photons bring."""
     signed: np.ndarray
     """What photons bring, each path with a random sign."""
-    signed_by_ray: np.ndarray
+    signed_final_gather: np.ndarray
     """The part of that which gathering rays found."""
 
     @classmethod
     def of(cls, values: np.ndarray) -> "NoiseSamples":
         """From (rows, columns, 4) values: the rest, all, and the signed sums at importons and by rays."""
         whole = np.nan_to_num(values.astype(np.float64), posinf=0.0, neginf=0.0)
-        rest, found, direct, by_ray = np.moveaxis(whole, -1, 0)
-        return cls(rest, found, direct + by_ray, by_ray)
+        rest, found, direct, final_gather = np.moveaxis(whole, -1, 0)
+        return cls(rest, found, direct + final_gather, final_gather)
 
 
 def _relative_mean(squares: np.ndarray, luminance: np.ndarray) -> float:
@@ -116,7 +116,7 @@ class NoiseVariances:
 
     def with_first(self, samples: NoiseSamples) -> "NoiseVariances":
         """After the first iteration, whose radii are too wide to tell the photons' noise."""
-        return NoiseVariances(rest_photon_variance=_relative_mean(np.square(samples.signed_by_ray), samples.all))
+        return NoiseVariances(rest_photon_variance=_relative_mean(np.square(samples.signed_final_gather), samples.all))
 
     def with_next(self, photons: int, samples: NoiseSamples, rest: np.ndarray, growth: float) -> "NoiseVariances":
         """After another iteration with so many photons.
@@ -124,14 +124,14 @@ class NoiseVariances:
         rest: that of the iteration learned from before. growth: how many times the variance of photons is larger in the
         iterations to come, as their radii shrink.
         """
-        by_ray = _relative_mean(np.square(samples.signed_by_ray), samples.all)
+        final_gather = _relative_mean(np.square(samples.signed_final_gather), samples.all)
         apart = _relative_mean(np.square(samples.rest - rest), samples.all - 0.5 * (samples.rest - rest))
         return NoiseVariances(
             self.photons + photons,
             self.photon_sum + growth * photons**2 * _relative_mean(np.square(samples.signed), samples.all),
-            self.rest_sum + 0.5 * max(apart - by_ray - self.rest_photon_variance, 0.0),
+            self.rest_sum + 0.5 * max(apart - final_gather - self.rest_photon_variance, 0.0),
             self.pairs + 1,
-            by_ray,
+            final_gather,
         )
 
     def best_photons(self, first: int, photon_cost: float, rest_cost: float) -> int:

@@ -9,9 +9,9 @@ from ...materials.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits
+from .active_paths import SEGMENTS_AT_ONCE
 from .band import Band, bands_of, rows_of_bands
 from .camera_view import is_rasterized
-from .living_paths import SEGMENTS_AT_ONCE
 from .viewport_demands import NO_DEMANDS, ViewportDemands, with_filtered
 
 

@@ -116,7 +116,7 @@ class DensityEstimator(Stage):
 
         Nothing is added, and what contributes is marked as it will be anyway.
         """
-        if importons.gathers or min(photons.count, importons.living.read_count()) < _FEWEST_TO_TRY:
+        if importons.gathers or min(photons.count, importons.active.read_count()) < _FEWEST_TO_TRY:
             return
         self._prepared = None
         with self.sums.left_alone():

@@ -95,17 +95,17 @@ class PhotonGrid(BufferSet):
         radii, caustics = photons.radii, photons.caustic_count
         spacing = float(np.spacing(np.float32(photons.largest_coordinate)))
         self._rounding = max(_ROUNDING_STEPS * spacing, 1e-30)
-        caustic_radii = radii.by_ray, *(part * radii.caustic for part in _FINER_SIDES)
+        caustic_radii = radii.final_gather, *(part * radii.caustic for part in _FINER_SIDES)
         self._parameters = {
             "caustic_sides": [self._side(radius) for radius in caustic_radii],
-            "wide_side": self._side(max(radii.by_ray, radii.wide)),
+            "wide_side": self._side(max(radii.final_gather, radii.wide)),
             "caustic_buckets": _buckets(caustics),
-            "wide_buckets": _buckets(photons.diffused_count),
+            "wide_buckets": _buckets(photons.global_photon_count),
         }
         self._holds_caustics = caustics > 0
-        buckets = _CAUSTIC_GRIDS * _buckets(caustics) + _WIDE_GRIDS * _buckets(photons.diffused_count)
+        buckets = _CAUSTIC_GRIDS * _buckets(caustics) + _WIDE_GRIDS * _buckets(photons.global_photon_count)
         self._grid.require_items(buckets)
-        self._sorted_photons.require_items(_CAUSTIC_GRIDS * caustics + photons.diffused_count)
+        self._sorted_photons.require_items(_CAUSTIC_GRIDS * caustics + photons.global_photon_count)
         cells = {"Buckets": self._grid.buffer}
         parameters = {**self._parameters, "count": photons.count}
         self._grid.clear()
@@ -149,7 +149,7 @@ class PhotonGrid(BufferSet):
 
     def _group(self, importons: SplatTargets) -> None:
         """List the importons that gather, those of a cell side by side."""
-        buckets = _buckets(importons.living.known_count)
+        buckets = _buckets(importons.active.known_count)
         cells = {"Buckets": self._importon_grid.buffer}
         parameters = {
             "buckets": buckets,
@@ -158,9 +158,9 @@ class PhotonGrid(BufferSet):
         }
         self._importon_grid.clear()
         self._visits.buffer.write(np.array([0, 1, 1, 0], np.uint32).tobytes())
-        importons.living.run(self._count_importons, {"Importons": importons.importons, **cells}, parameters)
+        importons.active.run(self._count_importons, {"Importons": importons.importons, **cells}, parameters)
         self._allocate.run(buckets, cells, {"count": buckets})
-        importons.living.run(
+        importons.active.run(
             self._place_importons,
             {"Importons": importons.importons, **cells, "Visits": self._visits.buffer},
             parameters,

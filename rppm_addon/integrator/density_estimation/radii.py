@@ -10,8 +10,8 @@ from ...scene.camera import Camera
 from ...scene.settings import RenderSettings
 
 _REFERENCE_PIXELS = 1 << 20
-EXPECTED_PHOTONS, EXPECTED_BY_RAY = 8, 16
-"""Diffused photons in the wide radius: where the camera looks, and at the ends of gathering rays, where nobody sees
+EXPECTED_PHOTONS, EXPECTED_BY_GATHERING = 8, 16
+"""Global photons in the wide radius: where the camera looks, and at the ends of gathering rays, where nobody sees
 how wide it is."""
 _MOST_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
@@ -26,7 +26,7 @@ RADIUS_PARAMETERS = {
     "radius_scale": "float",
     "radius_minimum": "float",
     "radius_maximum": "float",
-    "radius_by_ray": "float",
+    "final_gather_radius": "float",
     "most_radius_factor": "float",
     "wide_radius": "float",
     "gathers_again_below": "float",
@@ -52,9 +52,9 @@ class SplatRadii:
         return self.most_factor * self.narrow
 
     @property
-    def by_ray(self) -> float:
+    def final_gather(self) -> float:
         """Caustics there or at the ends of gathering rays."""
-        return max(self.caustic, radius_by_ray(self.narrow, self.wide))
+        return max(self.caustic, final_gather_radius(self.narrow, self.wide))
 
 
 @dataclass(frozen=True)
@@ -80,9 +80,9 @@ class Radii:
         return SplatRadii(self.maximum * self.shrinkage, self.wide * self.shrinkage, self.most_factor)
 
     @property
-    def by_ray(self) -> float:
+    def final_gather(self) -> float:
         """For caustics at the ends of gathering rays, meters."""
-        return radius_by_ray(self.maximum, self.wide) * self.shrinkage
+        return final_gather_radius(self.maximum, self.wide) * self.shrinkage
 
     @property
     def corner(self) -> float:
@@ -96,7 +96,7 @@ class Radii:
             "radius_scale": self.scale,
             "radius_minimum": self.minimum,
             "radius_maximum": self.maximum,
-            "radius_by_ray": self.by_ray,
+            "final_gather_radius": self.final_gather,
             "most_radius_factor": self.most_factor,
             "wide_radius": self.splats.wide,
             "gathers_again_below": self.corner,
@@ -115,8 +115,8 @@ def shrinkage(iteration: int, alpha: float) -> float:
 
 
 def expected_photons(gathers: bool) -> int:
-    """Diffused photons that the wide radius is to hold; ``gathers``: at the ends of gathering rays."""
-    return EXPECTED_BY_RAY if gathers else EXPECTED_PHOTONS
+    """Global photons that the wide radius is to hold; ``gathers``: at the ends of gathering rays."""
+    return EXPECTED_BY_GATHERING if gathers else EXPECTED_PHOTONS
 
 
 def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
@@ -130,7 +130,7 @@ def most_radius_factor(settings: RenderSettings) -> float:
     return 1.0 if exact else _MOST_FACTOR
 
 
-def wide_radius(diffused_photons: int, expected: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
+def wide_radius(global_photons: int, expected: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
     """Radius of the first iteration for photons that a diffuse surface has scattered, meters.
 
     Such light varies slowly, and its photons are spread over all of the scene: the disk holds
@@ -139,7 +139,7 @@ def wide_radius(diffused_photons: int, expected: int, bounds_low: np.ndarray, bo
     """
     x, y, z = bounds_high - bounds_low
     area = 2.0 * (x * y + y * z + z * x)
-    return math.sqrt(expected * area / (math.pi * max(diffused_photons, 1)))
+    return math.sqrt(expected * area / (math.pi * max(global_photons, 1)))
 
 
 def photons_found(counts: np.ndarray) -> float:
@@ -150,7 +150,7 @@ def photons_found(counts: np.ndarray) -> float:
     return max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
 
 
-def photons_found_by_ray(counts: np.ndarray) -> float:
+def photons_found_by_gathering(counts: np.ndarray) -> float:
     """Photons that half of the gathering rays find or more, of those that find any, from counts by pixel, (n,).
 
     Most rays may lead out of the scene, or to where no such light is: no radius would let them find photons, and the
@@ -164,7 +164,7 @@ def fitted_wide_radius(radius: float, expected: float, found: float) -> float:
     """The radius, meters, with which half of the view, or of the lit ends of gathering rays, would find ``expected``
     photons or more.
 
-    Infinite if none are found. ``found`` is what photons_found or photons_found_by_ray says of ``radius``.
+    Infinite if none are found. ``found`` is what photons_found or photons_found_by_gathering says of ``radius``.
     """
     return radius * math.sqrt(expected / found) if found > 0 else math.inf
 
@@ -180,7 +180,7 @@ def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: n
     return min(widest, 10.0 * float(np.median(seen))) if len(seen) else widest
 
 
-def radius_by_ray(narrow: float, wide: float) -> float:
+def final_gather_radius(narrow: float, wide: float) -> float:
     """Radius, meters, for caustics at the ends of gathering rays, from r_max and the wide radius.
 
     They are bright and rare there, which a wider disk makes them less.

@@ -62,7 +62,7 @@ Constants(
     LIGHT_SUMS=LightSum,
     SCATTERED_SUMS=_SCATTERED_SUMS,
     CAUSTICS_SUM=_SCATTERED_SUMS,
-    CAUSTICS_BY_RAY=_SCATTERED_SUMS + 1,
+    FINAL_GATHER_CAUSTICS=_SCATTERED_SUMS + 1,
     CAUSTICS_SUMS=_CAUSTICS_SUMS,
 )
 
@@ -149,7 +149,7 @@ class SplatSums(BufferSet):
 
     def photons_taken(self, count: int) -> np.ndarray:
         """(count, 2) how many photons the importons of each of the band's pixels took, where they are counted:
-        diffused ones, and caustic ones but for those at the ends of gathering rays."""
+        global ones, and caustic ones but for those at the ends of gathering rays."""
         return self._counted(count)[:, :2] * self.photons_for_one
 
     def signed(self, count: int) -> np.ndarray:

@@ -151,10 +151,10 @@ class Splatting(BufferSet):
             "gathers": importons.gathers,
             **sums.parameters,
         }
-        importons.living.run(
+        importons.active.run(
             self._insert,
             {**photons.blocks, **self.blocks, "Importons": importons.importons},
-            {**cube, "count": importons.living.most},
+            {**cube, "count": importons.active.most},
         )
         self._indirect_jobs.run(
             photons.count,

@@ -14,7 +14,7 @@ from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ITERATION, Bindable, ProgramLibrary
 from ...gl.records import Record
-from ..common.living_paths import LivingPaths
+from ..common.active_paths import ActivePaths
 from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii
 
@@ -33,8 +33,11 @@ Constants("DirectPhotons", DIRECT=DirectPhotons)
 
 
 class PhotonList(BufferSet):
-    """The numbers of the photons that importons may take: ``count`` of them, ``diffused_count`` of these diffused, and
-    ``indirect_count`` last scattered by what stores photons."""
+    """The numbers of the photons that importons may take.
+
+    ``count`` is how many there are. ``global_photon_count`` of them are global photons, which a diffuse surface has
+    scattered (Jensen 2001), and ``indirect_count`` were scattered last by a surface that stores photons.
+    """
 
     remedy = "lower the photons per iteration or the photon path length"
     _numbers = StorageBuffer("stored photons", "uint", photon_slots, header="uvec3", block="StoredPhotons")
@@ -42,11 +45,11 @@ class PhotonList(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._program = library.compute("stored_photons/list.comp")
-        self.count = self.diffused_count = self.indirect_count = 0
+        self.count = self.global_photon_count = self.indirect_count = 0
 
     @property
     def buffer(self) -> moderngl.Buffer:
-        """Three uint32, ``count``, ``diffused_count`` and ``indirect_count``, and the numbers."""
+        """Three uint32, ``count``, ``global_photon_count`` and ``indirect_count``, and the numbers."""
         return self._numbers.buffer
 
     def collect(
@@ -66,7 +69,7 @@ class PhotonList(BufferSet):
             {**blocks, **self.blocks},
             {"count": slots, "takes_direct": takes_direct.value},
         )
-        self.count, self.diffused_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
+        self.count, self.global_photon_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
 
 
 @dataclass(frozen=True)
@@ -79,7 +82,7 @@ class StoredPhotons:
     count: int
     caustic_count: int
     """No more than so many of them have come by specular surfaces or from a light only."""
-    diffused_count: int
+    global_photon_count: int
     """No more than so many of them has a diffuse surface scattered."""
     indirect_count: int
     """So many of all of them importons leave to gathering rays."""
@@ -100,7 +103,7 @@ class StoredPhotons:
             self,
             count=min(count, self.count),
             caustic_count=min(count, self.caustic_count),
-            diffused_count=min(count, self.diffused_count),
+            global_photon_count=min(count, self.global_photon_count),
         )
 
     @property
@@ -129,11 +132,11 @@ class SplatTargets:
     """The importons of a segment of a band's camera paths, one a pixel."""
 
     importons: moderngl.Buffer
-    living: LivingPaths
+    active: ActivePaths
     """The paths that came to this segment: what others have left in ``importons`` is of segments before."""
     gathers: bool
     """Whether the paths go on from there to gather: then the importons take no indirect photons."""
-    by_ray: bool
+    final_gather: bool
     """Whether gathering rays may have led there, which widens the narrow radius."""
     raster: CameraRaster | None
     """Where first hits lie on the camera's raster."""
@@ -142,8 +145,8 @@ class SplatTargets:
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
         """That the narrow radii of these importons do not exceed, meters."""
-        return photons.radii.by_ray if self.by_ray else photons.radii.caustic
+        return photons.radii.final_gather if self.final_gather else photons.radii.caustic
 
     def least_radius(self, photons: StoredPhotons) -> float:
         """That the least radii of these importons do not exceed, meters."""
-        return photons.radii.by_ray if self.by_ray else photons.radii.narrow
+        return photons.radii.final_gather if self.final_gather else photons.radii.narrow

@@ -18,7 +18,7 @@ from ...materials.tables import MaterialTables
 from ...scene.errors import DeviceError
 from ...scene.meshes import Instance, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..common.living_paths import LivingPaths, PathList
+from ..common.active_paths import ActivePaths, PathList
 from ..common.records.closures import CLOSURE
 from ..common.records.rays import HIT, NO_TRIANGLE, RAY
 from ..common.require import require
@@ -166,7 +166,7 @@ class Emitters(BufferSet):
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
         photon_paths: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         iteration: int,
     ) -> None:
         """Give photons that leave emitters with varying emission the radiance of their place and direction.
@@ -175,8 +175,8 @@ class Emitters(BufferSet):
         """
         if not self._varying:
             return
-        self._rays.require_items(living.most)
-        self._locate(rays, rays, hits, living, photons=True)
+        self._rays.require_items(active.most)
+        self._locate(rays, rays, hits, active, photons=True)
         resolve.run(self._rays.buffer, hits, closures, self._asked, iteration, 0)
         self._asked.run(self._tint_photons, {"Closures": closures, "PhotonPaths": photon_paths})
 
@@ -186,15 +186,15 @@ class Emitters(BufferSet):
         shadow_rays: moderngl.Buffer,
         light_triangles: moderngl.Buffer,
         contributions: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         iteration: int,
     ) -> None:
         """Give shadow rays to emitters with varying emission the radiance of the place that they sampled."""
         if not self._varying:
             return
         for buffer in (self._rays, self._hits, self._closures):
-            buffer.require_items(living.most)
-        self._locate(shadow_rays, light_triangles, self._hits.buffer, living, photons=False)
+            buffer.require_items(active.most)
+        self._locate(shadow_rays, light_triangles, self._hits.buffer, active, photons=False)
         resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
         self._asked.run(self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions})
 
@@ -203,11 +203,11 @@ class Emitters(BufferSet):
         rays: moderngl.Buffer,
         light_triangles: moderngl.Buffer,
         hits: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         photons: bool,
     ) -> None:
         """Rays that look at the emitters' places, and the places as hits; those that are to be asked are listed."""
-        living.run(
+        active.run(
             self._find,
             {
                 "Rays": rays,
@@ -218,7 +218,7 @@ class Emitters(BufferSet):
             },
             {"photons": photons},
         )
-        self._asked.take(living, self._rays.buffer)
+        self._asked.take(active, self._rays.buffer)
 
 
 def chances(weights: np.ndarray) -> np.ndarray:

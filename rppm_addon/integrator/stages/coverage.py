@@ -16,20 +16,20 @@ Constants("Coverage", MOST_PROBES=MOST_PROBES)
 
 
 class Coverage:
-    """Multiplies the diffused photons that importons will take where gathering rays end, and the path does not gather
+    """Multiplies the global photons that importons will take where gathering rays end, and the path does not gather
     again, by the disk's area over that of the surface in it (Importon.gathers)."""
 
     def __init__(self, library: ProgramLibrary) -> None:
         self._library = library
 
     def probe(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
-        """Of the importons that the living paths have just left."""
+        """Of the importons that the active paths have just left."""
         if not context.gathers or segment == 0:
             return
         with context.timers.stage("coverage"):
             acceleration = context.acceleration
             program = self._library.compute("coverage/probe.comp", acceleration.traversal_defines)
-            importons.living.run(
+            importons.active.run(
                 program,
                 {**context.blocks, **importons.lit_blocks},
                 {"segment": segment, "first_pixel": band.first_pixel},

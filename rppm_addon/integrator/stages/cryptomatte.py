@@ -92,7 +92,7 @@ class Cryptomatte(BufferSet):
             pairs, names = self._buffers[layer]
             if segment == 0:
                 self._upload_names(context, layer)
-            importons.living.run(
+            importons.active.run(
                 self._program,
                 {
                     **context.blocks,

@@ -11,9 +11,9 @@ from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode
+from ..common.active_paths import PathList
 from ..common.band import Band
 from ..common.iteration import Iteration
-from ..common.living_paths import PathList
 from ..common.records.closures import CLOSURE
 from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
@@ -56,7 +56,7 @@ class DirectLight(Stage):
     splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _pass_pixels, block="LightSplits")
     visibility = StorageBuffer("visibility", "uint", band_pixels, block="Visibility")
     triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels, block="LightTriangles")
-    living_rays = PathList("living shadow rays", band_pixels)
+    active_rays = PathList("active shadow rays", band_pixels)
     # Of scenes with transparent surfaces.
     _hits = StorageBuffer("hits of shadow rays", HIT)
     _closures = StorageBuffer("closures that shadow rays pass", CLOSURE)
@@ -79,7 +79,7 @@ class DirectLight(Stage):
         iteration: Iteration,
         segment: int,
     ) -> None:
-        """Add the direct light of the resolved vertices of the living camera paths to the band's radiance, or to what
+        """Add the direct light of the resolved vertices of the active camera paths to the band's radiance, or to what
         their gathering rays found.
 
         To be called before the paths scatter on. Nothing is added where photons bring direct light, or where none of
@@ -90,9 +90,9 @@ class DirectLight(Stage):
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):
                 self._sample_lights(context, importons, band, iteration, segment, ray)
-                living = self.living_rays
-                living.take(importons.living, self._rays.buffer)
-                if living.known_empty:
+                active = self.active_rays
+                active.take(importons.active, self._rays.buffer)
+                if active.known_empty:
                     continue
                 if context.resolve.has_terminators:
                     self._soften_terminator(context, importons)
@@ -101,7 +101,7 @@ class DirectLight(Stage):
                     self._rays.buffer,
                     self.triangles.buffer,
                     self.contributions.buffer,
-                    living,
+                    active,
                     iteration.number,
                 )
                 linking = context.lights.linking_blocks(self.contributions.buffer)
@@ -109,9 +109,9 @@ class DirectLight(Stage):
                     self._pass_surfaces(context, importons, linking, iteration, segment)
                 else:
                     context.acceleration.occluded(
-                        self._rays.buffer, self.triangles.buffer, self.visibility.buffer, living, linking
+                        self._rays.buffer, self.triangles.buffer, self.visibility.buffer, active, linking
                     )
-                living.run(self._add, {**context.blocks, **self.blocks})
+                active.run(self._add, {**context.blocks, **self.blocks})
 
     def _pass_surfaces(
         self,
@@ -124,9 +124,9 @@ class DirectLight(Stage):
         """Trace shadow rays through transparent surfaces, which take of what they bring."""
         rays, hits, closures, passing = self._rays, self._hits, self._closures, self._passing
         for buffer in (hits, closures):
-            buffer.require_items(self.living_rays.most)
-        passing.require(self.living_rays.most, to_keep=True)
-        passing.take(self.living_rays, rays.buffer)
+            buffer.require_items(self.active_rays.most)
+        passing.require(self.active_rays.most, to_keep=True)
+        passing.take(self.active_rays, rays.buffer)
         most = context.settings.transparent_max_bounces
         for surfaces in range(most + 1):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
@@ -151,7 +151,7 @@ class DirectLight(Stage):
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
-        self.living_rays.run(self._soften, {**context.blocks, **importons.lit_blocks, **self.blocks})
+        self.active_rays.run(self._soften, {**context.blocks, **importons.lit_blocks, **self.blocks})
 
     def _sample_lights(
         self,
@@ -163,7 +163,7 @@ class DirectLight(Stage):
         ray: int,
     ) -> None:
         """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
-        importons.living.run(
+        importons.active.run(
             self._sample,
             {**context.blocks, **importons.lit_blocks, **self.blocks},
             {

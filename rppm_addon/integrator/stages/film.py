@@ -148,16 +148,16 @@ class Film(Listener):
         counts, parameters = self._counts.of(band), self._parameters(context, band, segment)
         self._motion_vectors.add(context, importons, counts, band, events.iteration, segment)
         blocks = {**context.blocks, **importons.blocks, "PassCounts": counts}
-        importons.living.run(self._pass_program, blocks, parameters)
+        importons.active.run(self._pass_program, blocks, parameters)
         if self._caught_shadows is not None:
-            importons.living.run(self._caught_shadows, blocks, parameters)
+            importons.active.run(self._caught_shadows, blocks, parameters)
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
         """Listener.paths_scattered: add the light that the camera paths met in a segment."""
         if self._seen_light is None or not events.iteration.enters_film:
             return
         context, importons, band = events.context, events.importons, events.band
-        importons.living.run(
+        importons.active.run(
             self._seen_light,
             {**context.blocks, **importons.blocks},
             self._parameters(context, band, segment),

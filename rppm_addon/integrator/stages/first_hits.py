@@ -14,7 +14,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...scene.errors import DeviceError
 from ...scene.settings import FirstPhotonHits
-from ..common.living_paths import LivingPaths, PathList
+from ..common.active_paths import ActivePaths, PathList
 from ..common.require import require
 from ..device_scene.stage_context import StageContext
 from .light_gbuffer import LightGBuffer
@@ -52,8 +52,8 @@ class FirstHits(BufferSet):
         """Begin anew, as when lights or geometry have changed."""
         self._stands, self._traced, self._faster = False, 0, None
 
-    def find(self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths) -> None:
-        """Write the hits (HIT) of all photons' rays (RAY), those of ``living``.
+    def find(self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths) -> None:
+        """Write the hits (HIT) of all photons' rays (RAY), those of ``active``.
 
         Raises DeviceError where light G-buffers are asked for that the device has no room for.
         """
@@ -62,26 +62,26 @@ class FirstHits(BufferSet):
             self.forget()
         wanted = context.settings.first_photon_hits
         if wanted is FirstPhotonHits.AUTOMATIC:
-            wanted = self._automatic(context, rays, hits, living)
+            wanted = self._automatic(context, rays, hits, active)
         if wanted is FirstPhotonHits.TRACED and self._gbuffer is not None:
             self.disown(self._gbuffer)
             self._gbuffer, self._stands = None, False
         rasterized = wanted is FirstPhotonHits.RASTERIZED and self._build(context)
         self.route = FirstPhotonHits.RASTERIZED if rasterized else FirstPhotonHits.TRACED
-        self._run(self.route, context, rays, hits, living)
+        self._run(self.route, context, rays, hits, active)
 
     def _automatic(
-        self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths
+        self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths
     ) -> FirstPhotonHits:
         if self._faster is None:
             self._traced += 1
-            if self._traced <= _TRACED_BEFORE_TRIAL or living.most < _FEWEST_TO_TRY:
+            if self._traced <= _TRACED_BEFORE_TRIAL or active.most < _FEWEST_TO_TRY:
                 return FirstPhotonHits.TRACED
-            self._faster = self._try_both(context, rays, hits, living)
+            self._faster = self._try_both(context, rays, hits, active)
         return self._faster
 
     def _try_both(
-        self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, living: LivingPaths
+        self, context: StageContext, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths
     ) -> FirstPhotonHits:
         try:
             if not self._build(context):
@@ -92,7 +92,7 @@ class FirstHits(BufferSet):
         seconds = {}
         # The first time compiles.
         for route in 2 * (FirstPhotonHits.RASTERIZED, FirstPhotonHits.TRACED):
-            seconds[route] = self._seconds(route, context, rays, hits, living)
+            seconds[route] = self._seconds(route, context, rays, hits, active)
         log.debug("first photon hits: %.1f ms rasterized, %.1f ms traced", *(1e3 * s for s in seconds.values()))
         return min(seconds, key=lambda route: seconds[route])
 
@@ -102,9 +102,9 @@ class FirstHits(BufferSet):
         context: StageContext,
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
     ) -> float:
-        return self._context.seconds_of(functools.partial(self._run, route, context, rays, hits, living))
+        return self._context.seconds_of(functools.partial(self._run, route, context, rays, hits, active))
 
     def _build(self, context: StageContext) -> bool:
         """Whether there are light G-buffers, made now if they are not those of the scene."""
@@ -122,11 +122,11 @@ class FirstHits(BufferSet):
         context: StageContext,
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
     ) -> None:
         if route is FirstPhotonHits.TRACED:
-            context.acceleration.trace(rays, hits, living)
+            context.acceleration.trace(rays, hits, active)
             return
-        require(self._gbuffer).find(context.blocks, rays, hits, living.most, self._left)
+        require(self._gbuffer).find(context.blocks, rays, hits, active.most, self._left)
         if not self._left.known_empty:
             context.acceleration.trace(rays, hits, self._left)

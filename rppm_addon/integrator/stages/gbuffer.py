@@ -82,7 +82,7 @@ class GBuffer(CameraHits):
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
         geometry = context.geometry
         with context.timers.stage("gbuffer"):
-            importons.living.fill(band.pixel_count)
+            importons.active.fill(band.pixel_count)
             self.camera.write(view)
             self._framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
             self._draw.draw(

@@ -7,9 +7,9 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
+from ..common.active_paths import PathList
 from ..common.band import Band
 from ..common.iteration import Iteration
-from ..common.living_paths import PathList
 from ..common.records.camera_paths import CAMERA_PATH
 from ..common.records.closures import CLOSURE
 from ..common.records.importons import IMPORTON
@@ -43,7 +43,7 @@ class Importons(Stage):
     radiances = StorageBuffer("band radiance", "vec4", band_pixels, block="Radiances")
     aovs = StorageBuffer("band AOVs", "float", _band_aovs, block="AovValues")
     """Of each path the channels of the AOV passes, as the nodes of materials add to them."""
-    living = PathList("living camera paths", band_pixels, to_keep=True)
+    active = PathList("active camera paths", band_pixels, to_keep=True)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -65,15 +65,15 @@ class Importons(Stage):
     def trace(self, context: StageContext, segment: int) -> bool:
         """Find what the paths that go on hit; whether any may do so."""
         with context.timers.stage("camera tracing"):
-            self.living.keep(self.rays.buffer)
-            if not self.living.bound(segment):
+            self.active.keep(self.rays.buffer)
+            if not self.active.bound(segment):
                 return False
             self.find_hits(context)
             return True
 
     def find_hits(self, context: StageContext) -> None:
-        """What the rays of the living paths hit."""
-        context.acceleration.trace(self.rays.buffer, self.hits.buffer, self.living)
+        """What the rays of the active paths hit."""
+        context.acceleration.trace(self.rays.buffer, self.hits.buffer, self.active)
 
     def resolve(self, context: StageContext, iteration: Iteration, segment: int) -> None:
         """Hits to closures."""
@@ -82,7 +82,7 @@ class Importons(Stage):
                 self.rays.buffer,
                 self.hits.buffer,
                 self.closures.buffer,
-                self.living,
+                self.active,
                 iteration.number,
                 segment,
                 camera_paths=CameraPaths(self.paths.buffer, self.aovs.buffer),
@@ -91,7 +91,7 @@ class Importons(Stage):
     def scatter(self, context: StageContext, band: Band, segment: int) -> None:
         """Collect emission, leave importons, and set off the specular rays of the next segment."""
         with context.timers.stage("camera scattering"):
-            self.living.run(
+            self.active.run(
                 self._scatter,
                 {**context.blocks, **self.lit_blocks},
                 {"segment": segment, "first_pixel": band.first_pixel},
@@ -101,9 +101,9 @@ class Importons(Stage):
         """Those of the segment, to take photons; ``raster``: where its hits lie on the camera's."""
         return SplatTargets(
             self.importons.buffer,
-            self.living,
+            self.active,
             gathers=segment == 0 and context.gathers,
-            by_ray=segment > 0 and context.gathers,
+            final_gather=segment > 0 and context.gathers,
             raster=raster,
             center=context.center,
         )

@@ -23,7 +23,7 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ..common.living_paths import LivingPaths
+from ..common.active_paths import ActivePaths
 from ..common.require import require
 from ..lights.light_records import LightShape
 from ..surfaces.geometry import Geometry
@@ -223,7 +223,7 @@ class LightGBuffer(BufferSet):
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         count: int,
-        left: LivingPaths,
+        left: ActivePaths,
     ) -> None:
         """Write the hits (HIT) of photons' rays (RAY) that their texels settle, and list the others in ``left``.
 

@@ -65,12 +65,12 @@ class LightGroups(Listener):
         context, importons, direct_light = events.context, events.importons, events.direct_light
         with context.timers.stage("light groups"):
             if context.settings.direct_light is DirectLightMode.RAYS:
-                direct_light.living_rays.run(
+                direct_light.active_rays.run(
                     self._programs["direct"],
                     {**context.blocks, **direct_light.blocks, **self.blocks},
                     self._parameters(),
                 )
-            importons.living.run(
+            importons.active.run(
                 self._programs["passed"],
                 {**context.blocks, **importons.blocks, **self.blocks},
                 {"groups": self._groups},
@@ -81,7 +81,7 @@ class LightGroups(Listener):
         if not (self._groups and events.iteration.enters_film):
             return
         with events.context.timers.stage("light groups"):
-            events.importons.living.run(
+            events.importons.active.run(
                 self._programs["seen"],
                 {**events.context.blocks, **events.importons.blocks, **self.blocks},
                 self._parameters(),

@@ -88,7 +88,7 @@ class LightPasses(Listener):
         if not (self._kept and events.iteration.enters_film and by_rays):
             return
         with context.timers.stage("light passes"):
-            direct_light.living_rays.run(
+            direct_light.active_rays.run(
                 self._programs["direct"],
                 {**context.blocks, **events.importons.blocks, **direct_light.blocks, **self.blocks},
                 self._parameters(band, segment),

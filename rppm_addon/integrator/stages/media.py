@@ -9,8 +9,8 @@ from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.scene import Scene
+from ..common.active_paths import ActivePaths
 from ..common.iteration import Iteration
-from ..common.living_paths import LivingPaths
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
@@ -51,12 +51,12 @@ class Media(Stage):
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
         if self._is_used(context, iteration):
-            self._enter(context, photons.living, photons.blocks, "media/enter_photons.comp")
+            self._enter(context, photons.active, photons.blocks, "media/enter_photons.comp")
 
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
         if self._is_used(context, iteration):
-            self._enter(context, importons.living, importons.blocks, "media/enter_camera_paths.comp")
+            self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")
 
     def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
         """Find where media are, and what is in them, for a new scene; true where there are any."""
@@ -79,10 +79,10 @@ class Media(Stage):
         program = self._library.compute("media/find.comp", context.acceleration.traversal_defines)
         program.run(lights + 1, {**context.blocks, **self.blocks}, self._parameters(context))
 
-    def _enter(self, context: StageContext, living: LivingPaths, blocks: dict[str, Bindable], kernel: str) -> None:
+    def _enter(self, context: StageContext, active: ActivePaths, blocks: dict[str, Bindable], kernel: str) -> None:
         program = self._library.compute(kernel, context.acceleration.traversal_defines)
         parameters = {**self._parameters(context), "has_camera": not self._has_texels}
-        living.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
+        active.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))

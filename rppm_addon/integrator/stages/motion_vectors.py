@@ -76,7 +76,7 @@ class MotionVectors(BufferSet):
             return
         camera = context.scene.camera
         cameras = dict(zip(_CAMERAS, (camera, *self._cameras), strict=True))
-        importons.living.run(
+        importons.active.run(
             self._program,
             {
                 **context.blocks,

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
-from ..common.living_paths import LivingPaths
+from ..common.active_paths import ActivePaths
 from ..device_scene.stage_context import StageContext
 
 Record("EmitParameters", count="uint", target_count="uint")
@@ -36,12 +36,12 @@ class PhotonEmission:
         """Where photons hit first: end those that a soft light does not send there, and let the distance count."""
         self._falloff.run(count, {**context.blocks, **photons}, {"count": count})
 
-    def cut_soft_lights(self, context: StageContext, photons: Mapping[str, Bindable], living: LivingPaths) -> None:
+    def cut_soft_lights(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
         """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
         program = self._library.compute("photon_emission/cut.comp", context.acceleration.traversal_defines)
-        living.run(program, {**context.blocks, **photons})
+        active.run(program, {**context.blocks, **photons})
 
-    def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], living: LivingPaths) -> None:
+    def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
         """Where direct photons hit: mark those that came through a portal, whose light shadow rays bring."""
         program = self._library.compute("photon_emission/portal_passed.comp", {"PORTALS": 1})
-        living.run(program, {**context.blocks, **photons})
+        active.run(program, {**context.blocks, **photons})

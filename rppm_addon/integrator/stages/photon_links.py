@@ -8,7 +8,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ..common.living_paths import LivingPaths
+from ..common.active_paths import ActivePaths
 from ..common.stage_sizes import StageSizes, linked_photons
 from ..device_scene.stage_context import StageContext
 
@@ -42,12 +42,12 @@ class PhotonLinks(BufferSet):
         )
 
     def link(
-        self, context: StageContext, closures: moderngl.Buffer, paths: moderngl.Buffer, living: LivingPaths
+        self, context: StageContext, closures: moderngl.Buffer, paths: moderngl.Buffer, active: ActivePaths
     ) -> None:
-        """Change the closures (CLOSURE) that living photon paths (PHOTON_PATH) have come to."""
+        """Change the closures (CLOSURE) that active photon paths (PHOTON_PATH) have come to."""
         if self._link is None:
             return
-        living.run(
+        active.run(
             self._link,
             {**context.blocks, **self.blocks, "Closures": closures, "PhotonPaths": paths},
         )

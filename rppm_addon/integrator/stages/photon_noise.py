@@ -63,7 +63,7 @@ class PhotonNoise(Listener):
         """Listener.direct_light_found: count the vertices of a segment of camera paths. Waits for the device in
         iterations that weigh noise."""
         if events.iteration.weighs_noise:
-            self.vertices += events.importons.living.read_count()
+            self.vertices += events.importons.active.read_count()
 
     def sample(self, events: BandEvents) -> np.ndarray:
         """(rows, columns, 4) float32 luminances of a band's samples, with the film's exposure, for NoiseSamples.of.

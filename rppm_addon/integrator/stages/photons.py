@@ -9,8 +9,8 @@ from ...gl.programs import GROUP_SIZE, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight
+from ..common.active_paths import ActivePaths, PathList
 from ..common.iteration import Iteration
-from ..common.living_paths import LivingPaths, PathList
 from ..common.records.closures import CLOSURE
 from ..common.records.photon_paths import PHOTON_ORIGIN, PHOTON_PATH, PhotonFlag
 from ..common.records.photons import PHOTON, PHOTON_SEGMENT_SHIFT
@@ -90,7 +90,7 @@ class Photons(Stage):
     )
     _emitted = StorageBuffer("emitted photons", PHOTON_PATH, photon_paths, block="Emitted")
     _sums = StorageBuffer("flux sums", FLUX_SUMS, _flux_groups, block="Sums")
-    _living = PathList("living photon paths", photon_paths, to_keep=True)
+    _active = PathList("active photon paths", photon_paths, to_keep=True)
     first_hits = Part(FirstHits)
     _groups = Part(PhotonGroups)
     _links = Part(PhotonLinks)
@@ -108,37 +108,37 @@ class Photons(Stage):
         self._emission = PhotonEmission(library)
 
     @property
-    def living(self) -> LivingPaths:
+    def active(self) -> ActivePaths:
         """The list of the paths that go on."""
-        return self._living
+        return self._active
 
     def emit(self, context: StageContext, iteration: Iteration) -> None:
         """DirectPhotonHits: the iteration's photons leave the lights and find their first hits."""
         self.photon_count, self.slots = iteration.photon_count, 0
         rays, hits, paths = self._rays.buffer, self._hits.buffer, self._paths.buffer
         with context.timers.stage("emission"):
-            self._living.fill(self.photon_count)
+            self._active.fill(self.photon_count)
             self._emission.emit(context, self.blocks, self.photon_count)
             self._groups.find(context, rays, self.photon_count)
             self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
-                context.resolve, rays, hits, self._closures.buffer, paths, self._living, iteration.number
+                context.resolve, rays, hits, self._closures.buffer, paths, self._active, iteration.number
             )
         with context.timers.stage("first photon hits"):
-            self.first_hits.find(context, rays, hits, self._living)
+            self.first_hits.find(context, rays, hits, self._active)
             if context.lights.has_falloff:
                 self._emission.apply_falloff(context, self.blocks, self.photon_count)
             if context.lights.are_cut:
-                self._emission.cut_soft_lights(context, self.blocks, self._living)
+                self._emission.cut_soft_lights(context, self.blocks, self._active)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
 
     def trace(self, context: StageContext, segment: int) -> bool:
         """Find what the photons that go on hit; whether any may do so."""
         with context.timers.stage("photon tracing"):
-            self._living.keep(self._rays.buffer)
-            if not self._living.bound(segment):
+            self._active.keep(self._rays.buffer)
+            if not self._active.bound(segment):
                 return False
-            context.acceleration.trace(self._rays.buffer, self._hits.buffer, self._living)
+            context.acceleration.trace(self._rays.buffer, self._hits.buffer, self._active)
             return True
 
     def resolve(
@@ -150,13 +150,13 @@ class Photons(Stage):
                 self._rays.buffer,
                 self._hits.buffer,
                 self._closures.buffer,
-                self._living,
+                self._active,
                 iteration.number,
                 segment,
                 photon_paths=self._paths.buffer,
                 has_adjoint_queries=has_adjoint_queries,
             )
-            self._links.link(context, self._closures.buffer, self._paths.buffer, self._living)
+            self._links.link(context, self._closures.buffer, self._paths.buffer, self._active)
 
     def scatter(self, context: StageContext, subsurface: Subsurface, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
@@ -164,8 +164,8 @@ class Photons(Stage):
         with context.timers.stage("photon scattering"):
             self._begin_segment(segment)
             if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
-                self._emission.leave_to_shadow_rays(context, self.blocks, self._living)
-            self._living.run(
+                self._emission.leave_to_shadow_rays(context, self.blocks, self._active)
+            self._active.run(
                 self._scatter,
                 {**context.blocks, **self.blocks},
                 {
@@ -175,16 +175,16 @@ class Photons(Stage):
                 },
             )
         if has_adjoint_queries:
-            subsurface.walk_photons(context, self._living, self.blocks, segment)
+            subsurface.walk_photons(context, self._active, self.blocks, segment)
             self.resolve(context, iteration, segment, has_adjoint_queries=True)
             with context.timers.stage("photon scattering"):
-                self._living.run(self._adjoint, self.blocks)
+                self._active.run(self._adjoint, self.blocks)
 
     def _begin_segment(self, segment: int) -> None:
-        """Make room for a photon of each living path behind those of the segments before."""
-        self.slots += self._living.bound(segment)
+        """Make room for a photon of each active path behind those of the segments before."""
+        self.slots += self._active.bound(segment)
         self.photons.extend_items(self.slots)
-        self._begin.run(1, {**self.blocks, "LivingPaths": self._living.buffer}, {"segment": segment})
+        self._begin.run(1, {**self.blocks, "ActivePaths": self._active.buffer}, {"segment": segment})
 
     def list_stored(self, context: StageContext, listed: PhotonList, iteration: Iteration) -> PhotonList:
         """List the photons that importons may take. Where shadow rays find direct light, direct ones would count it
@@ -203,8 +203,8 @@ class Photons(Stage):
             self.photons.buffer,
             listed.buffer,
             listed.count,
-            listed.count - listed.diffused_count,
-            listed.diffused_count,
+            listed.count - listed.global_photon_count,
+            listed.global_photon_count,
             listed.indirect_count,
             self.photon_origins.buffer,
             self._groups.groups.buffer,

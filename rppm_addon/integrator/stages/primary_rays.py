@@ -32,7 +32,7 @@ class PrimaryRays(CameraHits):
     def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
         """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
         with context.timers.stage("gbuffer"):
-            importons.living.fill(band.pixel_count)
+            importons.active.fill(band.pixel_count)
             self.camera.write(view)
             self._rays.run(
                 band.pixel_count,

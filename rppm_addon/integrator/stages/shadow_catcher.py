@@ -43,16 +43,16 @@ class ShadowCatcher(Stage):
         self._program = library.compute("shadow_catcher/cast.comp") if sizes.has_catchers else None
 
     def cast(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
-        """Fill ``lit`` for the resolved vertices of the living camera paths, before they scatter on."""
+        """Fill ``lit`` for the resolved vertices of the active camera paths, before they scatter on."""
         if self._program is None:
             return
         with context.timers.stage("shadow catcher"):
-            importons.living.run(
+            importons.active.run(
                 self._program,
                 {**context.blocks, **importons.blocks, **self.blocks},
                 {"segment": segment, "first_pixel": band.first_pixel},
             )
             linking = context.lights.linking_blocks(self._links.buffer)
             context.acceleration.occluded(
-                self._rays.buffer, self._triangles.buffer, self.lit.buffer, importons.living, linking
+                self._rays.buffer, self._triangles.buffer, self.lit.buffer, importons.active, linking
             )

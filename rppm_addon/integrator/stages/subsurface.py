@@ -8,8 +8,8 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
+from ..common.active_paths import ActivePaths, PathList
 from ..common.band import Band
-from ..common.living_paths import LivingPaths, PathList
 from ..common.records.random_stages import RandomStage
 from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
@@ -75,21 +75,21 @@ class Subsurface(Stage):
             self._programs = {name: library.compute(f"subsurface/{name}.comp") for name in names}
 
     def walk_camera_paths(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
-        """Fill the exit closures of the living camera paths, whose hits are resolved."""
+        """Fill the exit closures of the active camera paths, whose hits are resolved."""
         if not self.is_used:
             return
         with context.timers.stage("camera subsurface"):
             blocks = importons.blocks
-            self._walk(context, importons.living, blocks, ("enter", "leave"), segment, RandomStage.SUBSURFACE, band)
+            self._walk(context, importons.active, blocks, ("enter", "leave"), segment, RandomStage.SUBSURFACE, band)
 
     def walk_photons(
         self,
         context: StageContext,
-        living: LivingPaths,
+        active: ActivePaths,
         blocks: Mapping[str, Bindable],
         segment: int,
     ) -> None:
-        """Send living photons that a surface scatters diffusely on from where they come out of it.
+        """Send active photons that a surface scatters diffusely on from where they come out of it.
 
         blocks: what they are, where they are and go, and the AdjointQueries that are still to be asked.
         """
@@ -97,12 +97,12 @@ class Subsurface(Stage):
             return
         with context.timers.stage("photon subsurface"):
             programs = ("enter_photons", "leave_photons")
-            self._walk(context, living, blocks, programs, segment, RandomStage.SUBSURFACE_PHOTONS)
+            self._walk(context, active, blocks, programs, segment, RandomStage.SUBSURFACE_PHOTONS)
 
     def _walk(
         self,
         context: StageContext,
-        living: LivingPaths,
+        active: ActivePaths,
         blocks: Mapping[str, Bindable],
         programs: tuple[str, str],
         segment: int,
@@ -117,10 +117,10 @@ class Subsurface(Stage):
         enter, leave = (self._programs[name] for name in programs)
         walk = self._library.compute("subsurface/walk.comp", context.acceleration.traversal_defines)
 
-        living.run(enter, blocks, parameters)
-        self._entered.take(living, self._rays.buffer)
+        active.run(enter, blocks, parameters)
+        self._entered.take(active, self._rays.buffer)
         walking = self._walking
-        walking.require(living.most, to_keep=True)
+        walking.require(active.most, to_keep=True)
         walking.take(self._entered, self._rays.buffer)
         first = 0
         for end in _LAST_STEPS:

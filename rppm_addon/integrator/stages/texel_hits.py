@@ -53,7 +53,7 @@ class TexelHits(CameraHits):
         assert texels is not None
         placement = _placement_of(context, texels)
         with context.timers.stage("gbuffer"):
-            importons.living.fill(band.pixel_count)
+            importons.active.fill(band.pixel_count)
             self.camera.write(view)
             self._texels.write(texel_records(camera, texels, placement, view))
             self._program.run(

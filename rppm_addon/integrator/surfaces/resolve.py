@@ -18,7 +18,7 @@ from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.scene import Scene
 from ..acceleration.acceleration_structure import AccelerationStructure
-from ..common.living_paths import LivingPaths
+from ..common.active_paths import ActivePaths
 from ..common.records.camera_paths import CAMERA_PATH
 from ..common.records.closures import CLOSURE
 from ..common.records.photon_paths import PHOTON_PATH
@@ -193,14 +193,14 @@ class Resolve(BufferSet):
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         iteration: int,
         segment: int,
         camera_paths: CameraPaths | None = None,
         photon_paths: moderngl.Buffer | None = None,
         has_adjoint_queries: bool = False,
     ) -> None:
-        """Fill the closures of living paths; inactive rays and misses give closures without a triangle.
+        """Fill the closures of active paths; inactive rays and misses give closures without a triangle.
 
         The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
         are of no kind. has_adjoint_queries: the same hits are seen once more, from where photons go; what chance
@@ -214,7 +214,7 @@ class Resolve(BufferSet):
                 "PathFlags": camera_paths.paths if camera_paths else photon_paths or rays,
                 "AovValues": camera_paths.aovs if camera_paths else closures,  # without camera paths none are written
             },
-            living,
+            active,
             {
                 "iteration": iteration,
                 "segment": segment,
@@ -228,14 +228,14 @@ class Resolve(BufferSet):
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
-        living: LivingPaths,
+        active: ActivePaths,
         iteration: int,
         segment: int,
     ) -> None:
-        """Fill the closures of what living shadow rays meet, as run does."""
+        """Fill the closures of what active shadow rays meet, as run does."""
         self._resolve(
             {"Rays": rays, "Hits": hits, "Closures": closures, "PathFlags": rays, "AovValues": closures},
-            living,
+            active,
             {
                 "iteration": iteration,
                 "segment": segment,
@@ -244,13 +244,13 @@ class Resolve(BufferSet):
             },
         )
 
-    def _resolve(self, blocks: dict[str, moderngl.Buffer], living: LivingPaths, told: dict[str, object]) -> None:
+    def _resolve(self, blocks: dict[str, moderngl.Buffer], active: ActivePaths, told: dict[str, object]) -> None:
         buffers = {**self._buffers, **blocks}
         parameters = {**self._parameters, **told, "ray_stride": 0, "ray_level": 0, "ray_levels": 0}
         closures = blocks["Closures"]
 
         # A list of paths is laid out as the order of a single program's hits.
-        order = living.buffer if len(self._programs) == 1 else self._order_by_program(buffers, living)
+        order = active.buffer if len(self._programs) == 1 else self._order_by_program(buffers, active)
         for number, program in enumerate(self._programs):
             arguments = 4 * (_RANGE_SIZE * number + 4)
             ordered, of_program = {**buffers, "HitOrder": order}, {**parameters, "program": number}
@@ -287,11 +287,11 @@ class Resolve(BufferSet):
             )
         return {**told, "ray_level": counts.levels}
 
-    def _order_by_program(self, buffers: dict[str, Bindable], living: LivingPaths) -> moderngl.Buffer:
-        self._order.require_items(_RANGE_SIZE * len(self._programs) + living.most)
+    def _order_by_program(self, buffers: dict[str, Bindable], active: ActivePaths) -> moderngl.Buffer:
+        self._order.require_items(_RANGE_SIZE * len(self._programs) + active.most)
         self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
-        buffers = {**buffers, "HitOrder": self._order.buffer, "LivingPaths": living.buffer}
-        living.run(self._count, buffers)
+        buffers = {**buffers, "HitOrder": self._order.buffer, "ActivePaths": active.buffer}
+        active.run(self._count, buffers)
         self._allocate.run(1, buffers, {"count": len(self._programs)})
-        living.run(self._order_hits, buffers)
+        active.run(self._order_hits, buffers)
         return self._order.buffer

@@ -6,7 +6,7 @@ import pytest
 from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.records.importons import IMPORTON, GatherFlag
 from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PHOTON_ORIGIN, PhotonFlag
 from rppm_addon.integrator.common.records.photons import PHOTON, PHOTON_CONTRIBUTED
@@ -34,7 +34,7 @@ class Device:
     def gather(
         self, photons: np.ndarray, importons: np.ndarray, radii: SplatRadii
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(photons,) bool of those that contributed, (importons,) diffused photons taken, (importons,) bool of those
+        """(photons,) bool of those that contributed, (importons,) global photons taken, (importons,) bool of those
         whose sums are more than 0."""
         buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "photon origins", "range")]
         directions, whole = PHOTON_ORIGIN.zeros(len(photons)), np.uint32([0, len(photons)])
@@ -50,19 +50,19 @@ class Device:
         iteration = iteration_buffer(self._context, photon_flux=1.0, wide_radius=radii.wide)
         grid = PhotonGrid(self._context, self._library, sizes)
         stored = StoredPhotons(
-            buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.diffused_count, listed.diffused_count,
-            listed.indirect_count,
+            buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.global_photon_count,
+            listed.global_photon_count, listed.indirect_count,
             buffers[2].buffer, buffers[2].buffer, 1.0, radii,
             float(np.abs(photons["position"]).max()), iteration,
         )  # fmt: skip
-        living = LivingPaths(self._context, self._library, "paths", "take fewer")
-        living.fill(len(importons))
-        taking = SplatTargets(buffers[1].buffer, living, False, True, None, np.zeros(3))
+        active = ActivePaths(self._context, self._library, "paths", "take fewer")
+        active.fill(len(importons))
+        taking = SplatTargets(buffers[1].buffer, active, False, True, None, np.zeros(3))
         grid.prepare(stored)
         grid.splat(stored, taking, sums)
         contributed = buffers[0].read(PHOTON.dtype, len(photons))["depth"] & PHOTON_CONTRIBUTED != 0
         result = contributed, sums.photons_taken(len(importons))[:, 0], sums.read(len(importons)).any(axis=(1, 2))
-        for part in (*buffers, living, listed, sums, grid, iteration):
+        for part in (*buffers, active, listed, sums, grid, iteration):
             part.release()
         return result
 

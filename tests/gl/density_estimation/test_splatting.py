@@ -79,7 +79,7 @@ def importons_of_segments(mapper, monkeypatch, count: int) -> list[np.ndarray]:
 
     def watched(estimator, taking, timers) -> None:
         importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count).copy()
-        importons["radius"][np.setdiff1d(np.arange(count), mapper.stages.importons.living.read())] = 0.0
+        importons["radius"][np.setdiff1d(np.arange(count), mapper.stages.importons.active.read())] = 0.0
         found.append(importons)
         splat(estimator, taking, timers)
 

@@ -107,7 +107,7 @@ def lit_through_a_hole() -> Scene:
 
 @pytest.mark.long
 def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
-    """The picture's mean stays, its variance falls, and so does the radius that the diffused photons need."""
+    """The picture's mean stays, its variance falls, and so does the radius that the global photons need."""
     results = {}
     for learning in (0, iteration.LEARNING_ITERATIONS):
         monkeypatch.setattr(iteration, "LEARNING_ITERATIONS", learning)

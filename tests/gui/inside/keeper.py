@@ -54,7 +54,7 @@ def kill(pid: int) -> dict:
 
 
 def processes() -> dict:
-    """Command lines of the living by process number, this one left out."""
+    """Command lines of the active by process number, this one left out."""
     found = {}
     for folder in Path("/proc").iterdir():
         if folder.name.isdecimal() and folder.name != str(os.getpid()):
@@ -74,7 +74,7 @@ def shared_memory() -> dict:
 
 
 def resources(folders: list[str]) -> dict:
-    """What each living process holds, in bytes and numbers, and the files in ``folders``."""
+    """What each active process holds, in bytes and numbers, and the files in ``folders``."""
     found = {}
     for pid, command in processes()["processes"].items():
         place = Path("/proc", pid)

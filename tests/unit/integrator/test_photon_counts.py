@@ -96,8 +96,8 @@ def test_what_photons_add_to_the_rest_is_theirs():
     spread = 0.4
 
     def samples() -> NoiseSamples:
-        by_ray, signed = random.normal(0.0, spread, (2, SIDE, SIDE))
-        rest = 2.0 + by_ray
+        final_gather, signed = random.normal(0.0, spread, (2, SIDE, SIDE))
+        rest = 2.0 + final_gather
         return NoiseSamples(rest, rest, signed, signed)
 
     first = samples()

@@ -11,7 +11,7 @@ from rppm_addon.integrator.density_estimation.radii import (
     fitted_wide_radius,
     most_radius_factor,
     photons_found,
-    photons_found_by_ray,
+    photons_found_by_gathering,
     radius_in_pixels,
     radius_limits,
     shrinkage,
@@ -79,8 +79,8 @@ def test_fitted_radius_would_find_the_expected_photons():
 
 def test_rays_that_find_nothing_do_not_widen_the_radius_of_those_that_do():
     counts = np.random.default_rng(6).poisson(200, 4000) * (np.arange(4000) % 50 == 0)
-    assert photons_found_by_ray(counts) == pytest.approx(200, rel=0.02)
-    assert photons_found_by_ray(np.zeros(9)) == 0
+    assert photons_found_by_gathering(counts) == pytest.approx(200, rel=0.02)
+    assert photons_found_by_gathering(np.zeros(9)) == 0
 
 
 def test_widest_radius_follows_scene_and_view():

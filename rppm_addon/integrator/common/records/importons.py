@@ -49,7 +49,7 @@ class GatherFlag(enum.IntFlag):
 
 
 PHOTON_FACTOR_SHIFT = 8
-"""Above the flags, what diffused photons are multiplied by; 0 is 1."""
+"""Above the flags, what global photons are multiplied by; 0 is 1."""
 Constants("PhotonFactor", PHOTON_FACTOR_SHIFT=PHOTON_FACTOR_SHIFT)
 Constants(
     "GatherFlags", FINAL_GATHER_ORIGIN=GatherFlag.FINAL_GATHER_ORIGIN, FINAL_GATHER_HIT=GatherFlag.FINAL_GATHER_HIT

@@ -18,7 +18,7 @@ PHOTON = Record(
     unused0="uint",
     unused1="uint",
 )
-"""One light path vertex, 64 bytes (paper section 5.1). Those of a segment follow each other as its living paths do.
+"""One light path vertex, 64 bytes (paper section 5.1). Those of a segment follow each other as its active paths do.
 ``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
 transparent. The upper bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known.
 ``path`` is the number of its path, with that of the segment above (PhotonNumbers); ``depth`` that of the path (Depths),
@@ -30,7 +30,9 @@ Constants("PhotonNumbers", PHOTON_SEGMENT_SHIFT=PHOTON_SEGMENT_SHIFT, PHOTON_CON
 StorageBlock("PhotonRange", "uint photon_first; uint photon_end;")
 """Where the photons of the current segment begin among those of the iteration, and where they end."""
 StorageBlock("Photons", "Photon photons[];")
-StorageBlock("StoredPhotons", "uint stored_count; uint diffused_count; uint indirect_count; uint stored_photons[];")
-"""How many are stored, how many of these are diffused, and the numbers of the stored ones."""
+StorageBlock(
+    "StoredPhotons", "uint stored_count; uint global_photon_count; uint indirect_count; uint stored_photons[];"
+)
+"""How many photons are stored, how many of these are global and indirect ones, and the numbers of the stored ones."""
 StorageBlock("PhotonGroups", "uint photon_groups[];")
 """Of the photons that left the lights, the numbers of their light groups."""

@@ -4,11 +4,11 @@
 
 layout(local_size_x = 64) in;
 
-#include "common/living_paths.glsl"
+#include "common/active_paths.glsl"
 readonly buffer Rays;
-#include "living_paths/kept.glsl"
+#include "active_paths/kept.glsl"
 
 void main() {
-    uint path = living_path();
+    uint path = active_path();
     if (path != NO_PATH && rays[path].maximum_distance > 0.0) keep_path(path);
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lists of the paths that still go on, so that each segment costs what its living paths cost."""
+"""Lists of the paths that still go on, so that each segment costs what its active paths cost."""
 
 from collections.abc import Mapping
 
@@ -13,8 +13,8 @@ from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram,
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 
-LIVING_PATHS_HEADER = Record(
-    "LivingPathsHeader",
+ACTIVE_PATHS_HEADER = Record(
+    "ActivePathsHeader",
     first="uint",
     count="uint",
     unused0="uint",
@@ -22,33 +22,33 @@ LIVING_PATHS_HEADER = Record(
     groups="uvec3",
     unused2="uint",
 )
-"""How a list of paths begins (living_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
+"""How a list of paths begins (active_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
 out as a range of shaders/resolve/ranges.glsl, ``first`` being the word where the numbers begin: a list stands for the
 order of the hits where one program resolves them all."""
-StorageBlock("KeptPaths", "LivingPathsHeader kept; uint kept_paths[];")
+StorageBlock("KeptPaths", "ActivePathsHeader kept; uint kept_paths[];")
 
 
 Record("CountParameters", count="uint")
 
 SEGMENTS_AT_ONCE = 4
-"""A GPU is asked for the number of living paths this seldom, as it has to be waited for."""
-_GROUPS = LIVING_PATHS_HEADER.offset("groups")
-_FIRST = LIVING_PATHS_HEADER.size // 4
+"""A GPU is asked for the number of active paths this seldom, as it has to be waited for."""
+_GROUPS = ACTIVE_PATHS_HEADER.offset("groups")
+_FIRST = ACTIVE_PATHS_HEADER.size // 4
 
 
-class LivingPaths(BufferSet):
-    """The numbers of living paths, with the arguments of the dispatches over them, on the device.
+class ActivePaths(BufferSet):
+    """The numbers of active paths, with the arguments of the dispatches over them, on the device.
 
     A list begins with all paths; each segment keeps those whose rays are to be traced. Programs over the paths of a
-    list include shaders/common/living_paths.glsl. The order of a list is nearly that of the numbers and changes no
+    list include shaders/common/active_paths.glsl. The order of a list is nearly that of the numbers and changes no
     picture. Paths that are not on the list keep what they left in their buffers: nothing may read it.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary, name: str, remedy: str) -> None:
         super().__init__(context, library)
         self._context = context
-        self._fill = library.compute("living_paths/fill.comp")
-        self._keep = library.compute("living_paths/keep.comp")
+        self._fill = library.compute("active_paths/fill.comp")
+        self._keep = library.compute("active_paths/keep.comp")
         self._lists = [self.own(GrowingBuffer(context, name, remedy))]
         """The list, and where there is to be ``keep``, room for the next one."""
         self.most = 0
@@ -58,13 +58,13 @@ class LivingPaths(BufferSet):
 
     @property
     def buffer(self) -> moderngl.Buffer:
-        """The list: LIVING_PATHS_HEADER and the numbers, uint32."""
+        """The list: ACTIVE_PATHS_HEADER and the numbers, uint32."""
         return self._lists[0].buffer
 
     @staticmethod
     def size(paths: int) -> int:
         """Bytes of a list of so many paths."""
-        return LIVING_PATHS_HEADER.size + 4 * paths
+        return ACTIVE_PATHS_HEADER.size + 4 * paths
 
     def require(self, paths: int, to_keep: bool = False) -> None:
         """Make room for so many, and for ``keep`` to leave some of them out; what was listed is gone.
@@ -87,7 +87,7 @@ class LivingPaths(BufferSet):
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
 
     def begin(self, most: int) -> None:
-        """List none, for a program to list up to so many (shaders/living_paths/kept.glsl)."""
+        """List none, for a program to list up to so many (shaders/active_paths/kept.glsl)."""
         self.require(most)
         self.most = most
         self._begin(self._lists[0], 0, (0, 0, 1))
@@ -97,25 +97,25 @@ class LivingPaths(BufferSet):
         self._keep_of(self, self._lists[1], rays)
         self._lists.reverse()
 
-    def take(self, paths: "LivingPaths", rays: moderngl.Buffer) -> None:
+    def take(self, paths: "ActivePaths", rays: moderngl.Buffer) -> None:
         """List those of another list's paths whose rays (RAY, by path) are active."""
         self.require(paths.most)
         self.most = paths.most
         self._keep_of(paths, self._lists[0], rays)
 
-    def _keep_of(self, paths: "LivingPaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
+    def _keep_of(self, paths: "ActivePaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
         self._begin(kept, 0, (0, 0, 1))
         paths.run(self._keep, {"Rays": rays, "KeptPaths": kept.buffer})
 
     @staticmethod
     def _begin(paths: GrowingBuffer, count: int, groups: tuple[int, int, int]) -> None:
-        header = LIVING_PATHS_HEADER.zeros(1)
+        header = ACTIVE_PATHS_HEADER.zeros(1)
         header["first"], header["count"], header["groups"] = _FIRST, count, groups
         paths.write(header)
 
     def run(self, program: ComputeProgram, buffers: Mapping[str, Bindable], parameters: Mapping | None = None) -> None:
         """Run a program for the paths of the list."""
-        program.run_indirect(self.buffer, _GROUPS, {**buffers, "LivingPaths": self.buffer}, parameters)
+        program.run_indirect(self.buffer, _GROUPS, {**buffers, "ActivePaths": self.buffer}, parameters)
 
     @property
     def known_empty(self) -> bool:
@@ -143,22 +143,22 @@ class LivingPaths(BufferSet):
 
     def read_count(self) -> int:
         """How many paths are listed. Waits for the device."""
-        return int(self._lists[0].read(LIVING_PATHS_HEADER.dtype, 1)["count"][0])
+        return int(self._lists[0].read(ACTIVE_PATHS_HEADER.dtype, 1)["count"][0])
 
     def read(self) -> np.ndarray:
         """(count,) uint32 numbers of the listed paths. Waits for the device."""
-        return self._lists[0].read(np.uint32, self.read_count(), LIVING_PATHS_HEADER.size)
+        return self._lists[0].read(np.uint32, self.read_count(), ACTIVE_PATHS_HEADER.size)
 
 
-class PathList(Declared[LivingPaths]):
+class PathList(Declared[ActivePaths]):
     """Declares a list of up to ``count`` paths; to_keep: ``keep`` will leave some of them out."""
 
     def __init__(self, name: str, count: Count | None = None, to_keep: bool = False, remedy: str | None = None) -> None:
         self._name, self._count, self._to_keep, self._remedy = name, count, to_keep, remedy
 
-    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> LivingPaths:
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> ActivePaths:
         """Declared.make."""
-        paths = LivingPaths(context, library, self._name, self._remedy or remedy)
+        paths = ActivePaths(context, library, self._name, self._remedy or remedy)
         if self._count is not None:
             paths.require(self._count(sizes), self._to_keep)
         return paths
@@ -166,9 +166,9 @@ class PathList(Declared[LivingPaths]):
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""
         lists = 2 if self._to_keep else 1
-        return {} if self._count is None else {self._name: lists * max(LivingPaths.size(self._count(sizes)), SMALLEST)}
+        return {} if self._count is None else {self._name: lists * max(ActivePaths.size(self._count(sizes)), SMALLEST)}
 
     def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
         """Declared.refuse_large; of two lists each may be as large."""
         if self._count is not None:
-            refuse_large_block(context, self._name, LivingPaths.size(self._count(sizes)), self._remedy or remedy)
+            refuse_large_block(context, self._name, ActivePaths.size(self._count(sizes)), self._remedy or remedy)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Measures what lists of living paths save: iterations with them and with all paths in every segment, in turns.
+"""Measures what lists of active paths save: iterations with them and with all paths in every segment, in turns.
 
 Prints a table. Scenes are files of ``rppm export``.
 """
@@ -14,7 +14,7 @@ import numpy as np
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.integrator.common.living_paths import LivingPaths
+from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import load_scene
 
@@ -32,8 +32,8 @@ STAGES = {
 def all_paths():
     """Lists that keep every path: programs then run for all, as if there were no lists."""
     with (
-        mock.patch.object(LivingPaths, "keep", lambda paths, rays: None),
-        mock.patch.object(LivingPaths, "take", lambda paths, others, rays: paths.fill(others.most)),
+        mock.patch.object(ActivePaths, "keep", lambda paths, rays: None),
+        mock.patch.object(ActivePaths, "take", lambda paths, others, rays: paths.fill(others.most)),
     ):
         yield
 
@@ -41,7 +41,7 @@ def all_paths():
 def measure(scene: Path, context: Context, library: ProgramLibrary, options: argparse.Namespace) -> list[str]:
     """A row of the table. Raises AssertionError when the pictures differ in a bit."""
     clock, mappers = Clock(context), {}
-    for name in ("all", "living"):
+    for name in ("all", "active"):
         loaded = load_scene(scene)
         loaded.camera = camera_at_resolution(loaded.camera, options.size, options.size)
         loaded.settings.photons = options.photons
@@ -67,7 +67,7 @@ def measure(scene: Path, context: Context, library: ProgramLibrary, options: arg
         mapper.release()
     cells = [scene.stem]
     for part in (*STAGES, "iteration"):
-        before, after = best["all", part], best["living", part]
+        before, after = best["all", part], best["active", part]
         cells.append(f"{1e3 * before:.0f} -> {1e3 * after:.0f} ({after / before:.2f})")
     return cells
 

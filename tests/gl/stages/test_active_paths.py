@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lists of living paths against NumPy, and pictures from them against pictures that run every path in every segment."""
+"""Lists of active paths against NumPy, and pictures from them against pictures that run every path in every segment."""
 
 import dataclasses
 
@@ -9,7 +9,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.common import band
-from rppm_addon.integrator.common.living_paths import LIVING_PATHS_HEADER, LivingPaths
+from rppm_addon.integrator.common.active_paths import ACTIVE_PATHS_HEADER, ActivePaths
 from rppm_addon.integrator.common.records.rays import RAY
 from rppm_addon.scene import (
     Aperture,
@@ -34,14 +34,14 @@ def device_rays(context, alive: np.ndarray):
     return context.moderngl.buffer(rays.tobytes())
 
 
-def header(paths: LivingPaths) -> np.void:
-    return np.frombuffer(paths.buffer.read(LIVING_PATHS_HEADER.size), LIVING_PATHS_HEADER.dtype)[0]
+def header(paths: ActivePaths) -> np.void:
+    return np.frombuffer(paths.buffer.read(ACTIVE_PATHS_HEADER.size), ACTIVE_PATHS_HEADER.dtype)[0]
 
 
 @pytest.mark.parametrize("count", [1, 64, 65, 5000])
 def test_lists_hold_what_lives(context, library, count):
     rng = np.random.default_rng(count)
-    paths, taken = (LivingPaths(context, library, name, "take fewer") for name in ("paths", "rays"))
+    paths, taken = (ActivePaths(context, library, name, "take fewer") for name in ("paths", "rays"))
     paths.require(count, to_keep=True)
     paths.fill(count)
     np.testing.assert_array_equal(paths.read(), np.arange(count))
@@ -66,17 +66,17 @@ def test_lists_hold_what_lives(context, library, count):
 @pytest.mark.parametrize("is_software", [True, False])
 def test_a_device_is_asked_once_in_a_segment(context, library, monkeypatch, is_software):
     """A GPU in every fourth."""
-    paths = LivingPaths(context, library, "paths", "take fewer")
+    paths = ActivePaths(context, library, "paths", "take fewer")
     paths.require(64, to_keep=True)
     paths.fill(64)
     lived, asked = {number: 64 - number for number in range(9)}, []
 
-    def count(_: LivingPaths) -> int:
+    def count(_: ActivePaths) -> int:
         asked.append(now)
         return lived[now]
 
     with monkeypatch.context() as patch:
-        patch.setattr(LivingPaths, "read_count", count)
+        patch.setattr(ActivePaths, "read_count", count)
         patch.setitem(vars(context), "is_software", is_software)
         for now in lived:
             known = lived[now if is_software else now - now % 4]
@@ -88,7 +88,7 @@ def test_a_device_is_asked_once_in_a_segment(context, library, monkeypatch, is_s
 def test_long_lists_are_dispatched_in_rows(context, library):
     """One group more than a row of them holds."""
     count = 65535 * 64 + 1
-    paths = LivingPaths(context, library, "paths", "take fewer")
+    paths = ActivePaths(context, library, "paths", "take fewer")
     paths.require(count, to_keep=True)
     paths.fill(count)
     assert header(paths)["groups"].tolist() == [65535, 2, 1]
@@ -166,8 +166,8 @@ def test_pictures_are_those_of_all_paths(mapper, other_mapper, monkeypatch, kind
     if kind == "bands":
         monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", SIZE * 8)
     got = outcome(mapper, shown_by(kind))
-    monkeypatch.setattr(LivingPaths, "keep", lambda paths, rays: None)
-    monkeypatch.setattr(LivingPaths, "take", lambda paths, others, rays: paths.fill(others.most))
+    monkeypatch.setattr(ActivePaths, "keep", lambda paths, rays: None)
+    monkeypatch.setattr(ActivePaths, "take", lambda paths, others, rays: paths.fill(others.most))
     expected = outcome(other_mapper, shown_by(kind))
     assert (expected["radiance"][..., :3] > 0).mean() > 0.3
     for name, value in expected.items():
