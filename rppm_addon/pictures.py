@@ -30,7 +30,7 @@ class PictureName:
     layer: str = ""
     """View layer; "" is the only one of a saved scene."""
     view: str = ""
-    """Of stereo and multiview, such as "left"; "" is the only one."""
+    """View of stereo and multiview, such as "left"; "" is the only one."""
 
     @property
     def joined(self) -> str:
@@ -169,12 +169,12 @@ def _channels_of(layer: str, count: int, passes: Sequence[RenderPass]) -> list[s
 
 
 _ORDER = "UVRGBArgbaXYZW"
-"""Of the letters of a layer's channels, whatever the layer."""
+"""Order of the letters of a layer's channels, whatever the layer."""
 
 
 @dataclass
 class ExrPicture:
-    """What an EXR file holds; arrays are float32, row 0 at the bottom."""
+    """Contents of an EXR file; arrays are float32, row 0 at the bottom."""
 
     channels: dict[str, np.ndarray]
     """(H, W) by channel name."""

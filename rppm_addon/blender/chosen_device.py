@@ -22,7 +22,7 @@ class ChosenDevice(NamedTuple):
 
 
 def device_of_environment() -> str:
-    """What RPPM_DEVICE or --rppm-device say; "" where they say nothing."""
+    """Return the device that RPPM_DEVICE or --rppm-device names; "" where neither names one."""
     return os.environ.get(VARIABLE, "")
 
 
@@ -38,7 +38,7 @@ def chosen_device() -> str:
 
 
 def device_here(devices: str) -> ChosenDevice | None:
-    """What ``devices``, devices by machine as JSON, say of this one; None where they say nothing."""
+    """Return this machine's device in ``devices``, devices by machine as JSON; None where they name none."""
     chosen = _by_machine(devices).get(platform.node())
     match chosen:
         case [str(identity), str(name)] if identity:

@@ -20,7 +20,7 @@ _SUMS = {"ADD_SHADER", "MIX_SHADER"}
 _OF_EACH = {"Color", "IOR"}
 """Inputs in which the three glasses differ."""
 _MOST_IMPURE = 0.1
-"""Of a glass's color, what the other two channels may have of the largest."""
+"""Largest fraction of a glass's strongest color channel that each of its other two channels may have."""
 _OPERATIONS: dict[str, Callable[[float, float], float]] = {
     "ADD": lambda a, b: a + b,
     "SUBTRACT": lambda a, b: a - b,
@@ -41,9 +41,9 @@ class ColoredGlasses:
     """All nodes between the root and the glasses, both included."""
     green: bpy.types.Node
     color: tuple[float, float, float]
-    """Of the sum."""
+    """Color of the sum of the three glasses."""
     indices: tuple[float, float, float]
-    """Of red, green and blue."""
+    """Indices of refraction of the red, the green and the blue glass."""
 
     @property
     def fitted(self) -> tuple[float, float]:
@@ -188,8 +188,9 @@ def _color(socket: bpy.types.NodeSocket) -> tuple[float, ...] | None:
 
 
 def _number(socket: bpy.types.NodeSocket, depth: int = 0, known: dict[str, float | None] | None = None) -> float | None:
-    """What an input gets, None where that varies or is computed in other ways than by plain arithmetic. known: by node,
-    what was found, as sums may have a node twice and panels ask at each drawing."""
+    """Return the number that an input gets, None where it varies or is computed in other ways than by plain
+    arithmetic. known: the numbers found so far, by node, as sums may have a node twice and panels ask at each
+    drawing."""
     if not socket.is_linked:
         return _finite(float(socket.default_value))
     source, _ = _source(socket)

@@ -165,7 +165,7 @@ def _check_size(engine: bpy.types.RenderEngine, render: bpy.types.RenderSettings
 
 
 def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
-    """What the panels show of a render."""
+    """Return the figures of a final render that the panels show."""
     width, height = scene.camera.resolution
     return RenderReport(
         RenderKind.FINAL,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one final render leaves for the next: the frames of an animation have most of their scene in common.
+"""Data that one final render leaves for the next: the frames of an animation have most of their scene in common.
 
 It is kept until another file is loaded, since without a window renders are all that Blender does. With a window, a user
 goes on working and wants the memory: there it is kept to the end of the animation only, or with Blender's Persistent

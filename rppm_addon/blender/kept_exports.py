@@ -8,7 +8,7 @@ from ..scene import Mesh, Scene
 from .export import SceneSync
 
 MOST_BYTES = 1 << 30
-"""Of meshes and images of a scene that is kept."""
+"""Most bytes that the meshes and images of a scene may have for it to be kept."""
 _MOST = 2
 _MOST_UPDATES = 1 << 10
 """Blocks that change at once: noting more, in each frame of an animation, would take longer than it saves."""
@@ -19,7 +19,7 @@ _kept: dict[_Key, SceneSync] = {}
 
 
 def key_of(depsgraph: bpy.types.Depsgraph) -> _Key:
-    """What tells a depsgraph: its address, scene and view layer."""
+    """Return the key that identifies a depsgraph: its address, scene and view layer."""
     return depsgraph.as_pointer(), depsgraph.scene.session_uid, depsgraph.view_layer.name
 
 
@@ -35,7 +35,7 @@ def keep(key: _Key, sync: SceneSync) -> None:
 
 
 def take(depsgraph: bpy.types.Depsgraph) -> SceneSync | None:
-    """What a viewport of the same depsgraph has exported, which is the caller's now; None where there is nothing."""
+    """Remove and return the kept export of a viewport of the same depsgraph; None where there is none."""
     return _kept.pop(key_of(depsgraph), None)
 
 

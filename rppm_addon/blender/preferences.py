@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..gl.context import DeviceInformation
 
 _MODULES = ("numpy", "moderngl", "glcontext")
-"""What the renderer process imports besides this package."""
+"""Modules that the renderer process imports besides this package."""
 _TEXTS = {
     ProcessState.STOPPED: "The renderer has not been needed yet",
     ProcessState.STARTING: "The renderer is starting",
@@ -36,7 +36,7 @@ _LIMITS = {
 
 _AUTOMATIC = "AUTOMATIC"
 _items: list[tuple[str, str, str, int]] = []
-"""Of the menu of devices; Blender does not keep their texts."""
+"""Items of the menu of devices, kept here because Blender does not keep their texts."""
 
 
 def _device_items(owner: bpy.types.AddonPreferences, _context: bpy.types.Context | None) -> list:
@@ -73,7 +73,7 @@ def _choose_device(owner: bpy.types.AddonPreferences, number: int) -> None:
 
 
 def missing() -> list[str]:
-    """What keeps RPPM from rendering here, a line each with the remedy."""
+    """List what keeps RPPM from rendering here, a line each with the remedy."""
     problems = []
     if sys.platform == "darwin":
         problems.append("macOS stops at OpenGL 4.1 and RPPM needs 4.3: use Linux or Windows")
@@ -87,7 +87,7 @@ def missing() -> list[str]:
 
 
 class RppmPreferences(bpy.types.AddonPreferences):
-    """What holds for all files of a user."""
+    """Preferences that hold for all files of a user."""
 
     bl_idname = root_package()
 

@@ -40,7 +40,7 @@ class _NoImages(ImageTable):
 
 
 class _NoReport(Report):
-    """What is to be said of the materials is said when they are rendered."""
+    """Report without warnings: those about the materials are given when they are rendered."""
 
     def warn(self, text: str) -> None:
         """Say nothing."""

@@ -53,7 +53,7 @@ VIEWPORT_DENOISING = {
     "denoising_start_sample": DEFAULTS.denoising_start_sample,
 }
 VIEWPORT_APART = {**VIEWPORT_SAMPLING, **VIEWPORT_DENOISING}
-"""What viewports have apart, by field of RenderSettings, with their defaults: Cycles', but for what is off at first."""
+"""Defaults of settings that viewports have apart, by field of RenderSettings: Cycles', but for what is off at first."""
 
 _UNITS = {
     "": {},
@@ -219,7 +219,7 @@ class RppmViewLayerProperties(bpy.types.PropertyGroup):
 
 
 class RppmShadingProperties(bpy.types.PropertyGroup):
-    """What a rendered viewport shows."""
+    """Settings of what a rendered viewport shows."""
 
     render_pass: EnumProperty(
         name="Render Pass",

@@ -46,12 +46,12 @@ class MemoryReading:
 
     @property
     def total_bytes(self) -> int:
-        """Of all parts."""
+        """Bytes of all parts together."""
         return self.by_settings.total_bytes + (self.scene_bytes or 0)
 
 
 def memory_reading(settings: RenderSettings, width: int, height: int, report: RenderReport | None) -> MemoryReading:
-    """What rendering width x height pixels takes, with what a former render of the scene needed beside."""
+    """Return the memory to render width x height pixels. report: a former render, which tells the scene's own part."""
 
     def expected(settings: RenderSettings, width: int, height: int, in_viewport: bool = False) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED

@@ -21,7 +21,7 @@ from .denoising_libraries import denoising_libraries
 _EXTENSIONS = "bl_ext"
 _process: RendererProcess | None = None
 _final: remote_rendering.RemoteRenderer | None = None
-"""Of all final renders."""
+"""Renderer that all final renders share; None before the first one."""
 _lock = threading.Lock()
 
 
@@ -82,7 +82,7 @@ def device_changed() -> None:
 
 
 def environment() -> dict[str, str]:
-    """What the process's environment has besides Blender's."""
+    """Return the variables that the process's environment has besides Blender's."""
     device = chosen_device()
     return {VARIABLE: device} if device else {}
 

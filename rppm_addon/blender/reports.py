@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the last renders of each scene had to tell, for the panels; kept while Blender runs, never saved."""
+"""Reports of the last renders of each scene, for the panels; kept while Blender runs, never saved."""
 
 import enum
 import threading
@@ -17,7 +17,7 @@ WARNINGS_KEPT = 200
 
 
 class RenderKind(enum.Enum):
-    """What a report is about."""
+    """Kind of render that a report is about."""
 
     FINAL = "Final"
     VIEWPORT = "Viewport"
@@ -31,7 +31,7 @@ class RenderReport:
     width: int
     height: int
     settings: RenderSettings
-    """Those that the render had."""
+    """Settings with which the scene was rendered."""
     iterations: int
     photons: int
     """Emitted in all iterations."""
@@ -60,7 +60,7 @@ class RenderReport:
 
     @property
     def photons_per_iteration(self) -> int:
-        """Those of each iteration, which have them alike."""
+        """Photons of each iteration; all iterations have equally many."""
         return self.photons // max(self.iterations, 1)
 
     @property
@@ -80,7 +80,7 @@ class RenderReport:
 
 
 def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
-    """What a viewport that shows a scene has to tell so far."""
+    """Return the report, so far, of a viewport that shows a scene."""
     width, height = scene.camera.resolution
     rendering = status.iteration / status.iterations_per_second if status.iterations_per_second > 0.0 else 0.0
     return RenderReport(
@@ -159,7 +159,7 @@ def _keep(scene_uid: int, kept: SceneReports) -> None:
 
 
 def reports_of(scene_uid: int) -> SceneReports:
-    """What is kept of a scene; empty before its first render."""
+    """Return the reports that are kept of a scene; empty before its first render."""
     return _reports.get(scene_uid, _EMPTY)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a warning is about, and how it is selected."""
+"""Subjects that warnings are about, and how they are selected."""
 
 import enum
 import re
@@ -10,7 +10,7 @@ import bpy
 
 
 class SubjectKind(enum.Enum):
-    """What warnings name at their beginning; the numbers are kept by files and never change."""
+    """Kind of thing that a warning names at its beginning. The numbers are kept by files and never change."""
 
     OBJECT = 0
     MATERIAL = 1

@@ -31,7 +31,7 @@ POLL_SECONDS = 1.0 / 30.0
 READ_OUT_SECONDS = 1.0
 """Between two drawings of the panels' read-outs, which take Blender's time as well."""
 SLICE_SECONDS = 0.03
-"""Of an export that would take long, between which Blender goes on."""
+"""Length of each slice of an export that would take long, in seconds; Blender goes on between them."""
 PROGRESS_SECONDS = 0.25
 """Between two drawings of how far an export is."""
 NAVIGATION_SECONDS = 0.4
@@ -45,9 +45,9 @@ class Viewport:
         self.engine = engine
         self._sync = SceneSync()
         self._depsgraph_key: tuple | None = None
-        """Of what is exported; None before the first export."""
+        """Key of the exported depsgraph (kept_exports.key_of); None before the first export."""
         self._extent: tuple = ()
-        """What of the viewport says which objects it shows, without Blender telling of a change."""
+        """Local view and local collections, which decide what is shown and change without Blender telling."""
         self._scene: Scene | None = None
         self._session = renderer_process().open(SessionKind.VIEWPORT)
         self._texture = FrameTexture()
@@ -59,7 +59,7 @@ class Viewport:
         self._seen: tuple = ()
         self._error = ""
         self._error_shown: str | None = None
-        """What panels were told; None makes them forget what the viewport before told them."""
+        """Error that panels were told; None makes them forget the error of the previous viewport."""
         self._recorded: SessionStatus | None = None
         self._read_out_at = 0.0
         self._regions: dict[int, tuple[float, float, float, float]] = {}
@@ -201,7 +201,7 @@ class Viewport:
         self._error = text
 
     def _state(self) -> tuple:
-        """What a drawing depends on that comes from the renderer process."""
+        """Return the state of the renderer process that a drawing depends on."""
         process, status, frame = renderer_process(), self._session.status, self._session.newest()
         shown = None if frame is None else frame.sequence
         return process.state, status.generation, status.programs_started, status.iteration, status.error, shown
@@ -241,7 +241,7 @@ def _is_playing(context: bpy.types.Context) -> bool:
 
 
 def _settings(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> RenderSettings:
-    """Those of the viewport, with the pass that it shows."""
+    """Return the settings of the viewport, with the pass that it shows."""
     shown = context.space_data.shading.rppm.render_pass
     return export_settings(depsgraph.scene_eval, viewport=True, shown_pass=shown)
 
@@ -333,7 +333,7 @@ def _on_undo(*_: object) -> None:
 
 @persistent
 def _on_evaluated(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """What changes in Solid is to be seen in Rendered."""
+    """Note what has changed, so that changes made in Solid are seen in Rendered."""
     if threading.current_thread() is threading.main_thread():  # renders evaluate depsgraphs of their own
         _close_freed()
         kept_exports.note(depsgraph)

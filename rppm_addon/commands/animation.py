@@ -22,11 +22,11 @@ from .terminal import printable
 
 @dataclass
 class AnimationRequest:
-    """What the command line asks of an animation."""
+    """Request of the command line for an animation."""
 
     blend: BlendRequest
     render: RenderRequest
-    """Of each frame; its outputs have a place for the number."""
+    """Request for each frame; its outputs have a place for the frame number."""
     frames: Sequence[int]
     resume: bool = False
     """Leave out frames whose files are all there and whole."""

@@ -16,7 +16,7 @@ _Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
 
 def parser() -> argparse.ArgumentParser:
-    """Of the whole program: what it gives has the name of the command as ``command``."""
+    """Return the parser of the whole program. Parsed options have the name of the command as ``command``."""
     common = argparse.ArgumentParser(add_help=False)
     common.add_argument("--debug", action="store_true", help="show tracebacks and everything that is logged")
     common.add_argument("--device", metavar="DEVICE", help="one that info lists; RPPM_DEVICE does the same")

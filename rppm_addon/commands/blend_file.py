@@ -249,7 +249,7 @@ def _leave_one_picture(scene: Any) -> None:
 
 
 def _picture_names(scene: Any) -> list[PictureName]:
-    """Those that Blender renders, in its order; a single one needs no name."""
+    """Return the names of the pictures that Blender renders, in its order; a single picture needs no name."""
     render = scene.render
     views = [""]
     if render.use_multiview:

@@ -119,7 +119,7 @@ def _boolean(path: str, value: str) -> bool:
 
 
 def _datablock(roots: Sequence, path: str, value: str) -> Any:
-    """What a path such as ``objects["Camera.001"]`` names; None for the word None."""
+    """Return the data-block that a path such as ``objects["Camera.001"]`` names; None for the word None."""
     if value == "None":
         return None
     for root in roots:

@@ -9,7 +9,7 @@ from pathlib import Path
 from ..scene.errors import SettingsError
 
 FIRST_FRAME, LAST_FRAME = -1048574, 1048574
-"""What Blender allows (MINAFRAME and MAXFRAME)."""
+"""First and last frame numbers that Blender allows (MINAFRAME and MAXFRAME)."""
 _RANGE = re.compile(r"(-?\d+)(?:\.\.(-?\d+)(?:\.\.(-?\d+))?)?")
 _PLACE = re.compile(r"#+(?!.*#)")
 """The last run of #, as Blender has it."""

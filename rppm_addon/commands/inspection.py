@@ -41,7 +41,7 @@ def false_colors(values: np.ndarray) -> np.ndarray:
 
 
 def inspection_lines(costs: np.ndarray, counts: Mapping[str, int], memory: Mapping[str, int]) -> list[str]:
-    """What to print: each quantity's mean, median, 99.9th percentile and maximum, counts, bytes by buffer."""
+    """List the lines to print: each quantity's mean, median, 99.9th percentile and maximum, counts, bytes by buffer."""
     lines = [f"{'per ray':<10}{'mean':>9}{'median':>9}{'99.9 %':>9}{'most':>9}"]
     for index, name in enumerate(CUBEMAP_COSTS):
         values = costs[..., index]

@@ -44,7 +44,7 @@ class MergedStill:
     warnings: list[str]
 
     def report(self) -> dict[str, object]:
-        """What happened, for --json: plain values only."""
+        """Return the report of the merged picture for --json, in plain values only."""
         return {
             "iterations": self.iterations,
             "photons": self.photons,
@@ -57,7 +57,7 @@ class MergedStill:
 
     @property
     def metadata(self) -> dict[str, object]:
-        """Of its EXR."""
+        """Metadata of the picture's EXR."""
         devices = ", ".join(self.devices)
         return picture_metadata(self.iterations, self.photons, self.seconds, devices, self.radius_meters)
 

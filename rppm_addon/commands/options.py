@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the commands of the rppm program do alike with their options."""
+"""Handling of options that the commands of the rppm program share."""
 
 import argparse
 import json
@@ -49,7 +49,7 @@ def split_values(values: list[str]) -> tuple[dict[str, object], list[tuple[str, 
 
 
 def values_and_limits(options: argparse.Namespace) -> tuple[dict[str, object], list[tuple[str, str]]]:
-    """What split_values makes of --set, with the options that are settings over it."""
+    """Split --set as split_values does; options that are settings override the settings in --set."""
     settings, data_values = split_values(options.values)
     return settings | given_settings(options), data_values
 

@@ -44,9 +44,9 @@ class PictureSet(RenderObserver):
         """outputs: the files of all; make: of a picture's name, and the names of all, the recorder."""
         self.outputs = list(outputs)
         self.names: list[PictureName] = [PictureName()]
-        """Of the pictures that the render is to have, in their order; whoever starts it sets them."""
+        """Names of the pictures that the render is to have, in their order; whoever starts the render sets them."""
         self.recorders: list[RenderRecorder] = []
-        """Of those that have begun."""
+        """Recorders of the pictures that have begun."""
         self.error: str | None = None
         self._make = make
         self._name = PictureName()
@@ -160,7 +160,7 @@ class PictureSet(RenderObserver):
 
     @property
     def files(self) -> list[Path]:
-        """What has been written."""
+        """Files that have been written."""
         if self.is_single:
             return self._current.files
         parts = [path for _, recorder in self.finished for path in recorder.parts_written]
@@ -172,7 +172,7 @@ class PictureSet(RenderObserver):
         return [mark for _, recorder in self.finished for mark in recorder.snapshots_missed]
 
     def report(self) -> dict[str, object]:
-        """What happened, for --json: plain values only."""
+        """Return the report of the render for --json, in plain values only."""
         if self.is_single:
             return self._current.report()
         pictures = [{"layer": name.layer, "view": name.view, **recorder.report()} for name, recorder in self.finished]

@@ -26,7 +26,7 @@ _LEAST_TIME_LIMIT = 1e-3
 
 @dataclass
 class RenderRequest:
-    """What the command line asks of a render."""
+    """Request of the command line for a render."""
 
     outputs: list[Path]
     """.exr and .png files to write."""
@@ -176,12 +176,12 @@ class RenderRecorder(RenderObserver):
 
     @property
     def finished_scene(self) -> Scene:
-        """Of a finished render."""
+        """Scene of a finished render."""
         return self.scene
 
     @property
     def frame(self) -> "Frame":
-        """Of a finished render."""
+        """Frame of a finished render."""
         return self.result.frame
 
     @property
@@ -191,14 +191,14 @@ class RenderRecorder(RenderObserver):
 
     @property
     def metadata(self) -> dict[str, object]:
-        """Of the EXR of a finished render."""
+        """Metadata of the EXR of a finished render."""
         statistics = self.result.statistics
         return picture_metadata(
             statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_meters
         )
 
     def report(self) -> dict[str, object]:
-        """What happened, for --json: plain values only."""
+        """Return the report of the render for --json, in plain values only."""
         scene, result = self.scene, self.result
         return {
             "files": [str(path) for path in self.files],
@@ -227,7 +227,7 @@ class RenderRecorder(RenderObserver):
         return f"{self.figures()}: {', '.join(str(path) for path in self.files)}"
 
     def figures(self) -> str:
-        """What a finished render took, in a line."""
+        """Return the samples, photons, seconds, resolution and device of a finished render in one line."""
         statistics = self.result.statistics
         width, height = self.scene.camera.resolution
         return (
@@ -237,7 +237,7 @@ class RenderRecorder(RenderObserver):
 
     @property
     def files(self) -> list[Path]:
-        """What has been written."""
+        """Files that have been written."""
         return [*self.request.outputs, *self.parts_written]
 
     @property

@@ -15,7 +15,7 @@ from .places import REMEDY, LibraryPlace
 log = logging.getLogger(__name__)
 
 _FEATURES = {DENOISING_ALBEDO: "albedo", DENOISING_NORMAL: "normal"}
-"""What guides, by pass, as the library names it."""
+"""Names in the library of the passes that guide denoising, by pass."""
 _BRIGHTEST = 65504.0
 """In place of what is infinite: the end of the half floats that the library computes with."""
 

@@ -35,7 +35,7 @@ _FUNCTIONS = {
     "oidnExecuteFilter": (None, c_void_p),
     "oidnReleaseFilter": (None, c_void_p),
 }
-"""What is called: the result and the arguments."""
+"""Functions that are called, by name: the types of the result and of the arguments."""
 
 
 class OpenImageDenoise:

@@ -16,7 +16,7 @@ REMEDY = (
     "take a Blender from blender.org, which brings it, install the package pyoidn (pip install rppm-addon[denoise]), "
     f"or name the file of {_NAME} in the add-on's preferences or the environment variable {VARIABLE}"
 )
-"""What to do where there is none."""
+"""Advice to users where no library is found."""
 
 
 class Source(enum.Enum):

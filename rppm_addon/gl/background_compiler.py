@@ -35,7 +35,7 @@ _KEEPING_SECONDS = 0.1
 """Drivers write their cache from a thread of their own, a little after the program is there."""
 _DISPATCH_INDIRECT_BUFFER = 0x90EE
 _NICENESS = 10
-"""Of a thread whose work nobody waits for."""
+"""Niceness of a thread whose work nobody waits for."""
 
 
 class EmptyDispatch:
@@ -132,7 +132,7 @@ class BackgroundCompiler:
         self._compiled: set[str] = set()
         """Texts of those that were tried."""
         self._threads = {True: 0, False: 0}
-        """Those that somebody waits for, and those, one at most, that work at a lower priority."""
+        """Counts of threads: those that somebody waits for, and those, one at most, that work at a lower priority."""
         self._hurries = True
 
     def submit(self, source: Source, needed: bool = True) -> None:
@@ -205,7 +205,7 @@ class BackgroundCompiler:
             context.release()
 
     def _next(self, hurries: bool) -> Source | None:
-        """What to compile; with nothing to do, or once the process is about to end, the thread ends."""
+        """Return the source to compile next; None ends the thread: nothing waits, or the process is about to end."""
         with self._condition:
             if not self._waiting or not threading.main_thread().is_alive():
                 self._threads[hurries] -= 1

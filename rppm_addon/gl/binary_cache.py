@@ -20,7 +20,7 @@ _PROGRAM_BINARY_LENGTH = 0x8741
 _LINK_STATUS = 0x8B82
 _DIGEST_SIZE, _KIND_SIZE = 32, 4
 _FORMAT = "digest, kind, binary\n"
-"""Of an entry: those of another are other entries."""
+"""Format of an entry, part of its key: entries of another format are other entries."""
 
 
 def cache_folder() -> Path:
@@ -38,7 +38,7 @@ def cache_folder() -> Path:
 
 
 def pack_entry(key: bytes, kind: int, binary: bytes) -> bytes:
-    """What is written of a program: a digest over key and rest, the driver's kind of binary, and the binary."""
+    """Pack the entry of a program: a digest over key and rest, the driver's kind of binary, and the binary."""
     body = struct.pack("<I", kind) + binary
     return hashlib.sha256(key + body).digest() + body
 

@@ -27,7 +27,7 @@ Count = Callable[[Any], int]
 
 
 class Resource(Protocol):
-    """What lies on the device."""
+    """An object on the device that can be released."""
 
     def release(self) -> object:
         """Give it back."""
@@ -169,9 +169,9 @@ class BufferSet:
     """Owner of what it declares and of what else it is told to own."""
 
     remedy: ClassVar[str] = REMEDY
-    """What helps where the device has no room for a buffer."""
+    """Advice to the user where the device has no room for a buffer."""
     _declared: ClassVar[dict[str, Declared]] = {}
-    """What the class declares by attribute, after what the classes declare that it is made from."""
+    """Declared members by attribute: those of the base classes, then those of the class."""
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
@@ -254,7 +254,7 @@ class BufferSet:
 
 
 def sum_by_name(parts: Iterable[Mapping[str, int]]) -> dict[str, int]:
-    """Those of one name together."""
+    """Sum the values of the parts under each name."""
     sums: dict[str, int] = {}
     for part in parts:
         for name, size in part.items():

@@ -12,7 +12,7 @@ from .context import TEXEL_SIZE, Context
 from .texel_buffers import allocated_size, release_textures
 
 _RANGE_ITEMS = 256
-"""Of any size begin at bytes where every device lets a block begin."""
+"""Alignment of a range in items: items of any size then begin where every device lets a block begin."""
 SMALLEST = 64
 """Bytes that every buffer has at least."""
 REMEDY = "simplify the scene"
@@ -91,7 +91,7 @@ class GrowingBuffer:
         return self._size
 
     def ranges(self, count: int) -> list["BufferRange"]:
-        """Of the first ``count`` items, parts that a storage block holds and that begin where one may."""
+        """Split the first ``count`` items into parts that a storage block holds and that begin where one may."""
         most = self._context.storage_block_limit // self.item_size
         if count > most:
             most -= most % _RANGE_ITEMS

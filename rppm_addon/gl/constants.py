@@ -42,7 +42,7 @@ class Constants:
 
 
 def _numbers(value: Any) -> dict[str, int] | None:
-    """Of what is enumerated, by name; None for plain values."""
+    """Return the numbers of an enum, a mapping or a tuple of names, by name; None for plain values."""
     if isinstance(value, type) and issubclass(value, enum.Enum):
         return {str(member.name): int(member.value) for member in value}  # but for those of several bits, such as ALL
     if isinstance(value, Mapping):

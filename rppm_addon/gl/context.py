@@ -42,10 +42,10 @@ LARGEST_BUFFER = (1 << 32) - TEXEL_SIZE
 """Bytes that shaders and drivers count in 32 bits."""
 _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87FC}
 _DEDICATED_KIBIBYTES = 0x9047
-"""Of GL_NVX_gpu_memory_info."""
+"""Name of the dedicated memory, in KiB, in GL_NVX_gpu_memory_info."""
 _VARIABLE = "RPPM_DEVICE"
 _NO_ADDRESSES = frozenset((1, 2, 3, ctypes.c_void_p(-1).value))
-"""That some of Windows' drivers return in place of 0 (khronos.org/opengl/wiki/Load_OpenGL_Functions)."""
+"""Addresses that some of Windows' drivers return in place of 0 (khronos.org/opengl/wiki/Load_OpenGL_Functions)."""
 _REMEDY = (
     "install a driver with EGL (Debian: libegl1 libegl-mesa0 libgl1-mesa-dri libgl1), let this user open /dev/dri, or "
     "choose another device"
@@ -60,7 +60,7 @@ _SHARING = frozenset((DeviceKind.INTEGRATED, DeviceKind.SOFTWARE))
 
 @dataclass
 class DeviceInformation:
-    """What was found: names, OpenGL version, limits by their GL names, and what is missing."""
+    """Facts about an opened device: names, OpenGL version, limits by their GL names, and what is missing."""
 
     name: str
     driver: str
@@ -200,7 +200,7 @@ class Context:
 
     @functools.cached_property
     def most_texels(self) -> int:
-        """That one texel buffer may span."""
+        """Texels that one texel buffer may span."""
         return self.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
 
     @property
@@ -210,7 +210,7 @@ class Context:
 
     @functools.cached_property
     def vertex_images(self) -> int:
-        """That a vertex shader may read."""
+        """Images that a vertex shader may read."""
         return self.integers(_MAX_VERTEX_IMAGE_UNIFORMS)[0]
 
     def array_limit(self, texel_bytes: int | None) -> int:

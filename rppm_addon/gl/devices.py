@@ -83,7 +83,7 @@ class _Egl:
         return ""
 
     def uuid(self, device: int) -> str:
-        """Of EGL_EXT_device_persistent_id, in hexadecimal; empty where there is none."""
+        """Return the UUID of EGL_EXT_device_persistent_id, in hexadecimal; empty where there is none."""
         types = (ctypes.c_uint, ctypes.c_void_p, ctypes.c_int, ctypes.c_int, ctypes.c_char_p)
         with contextlib.suppress(LookupError):
             query = self._function(b"eglQueryDeviceBinaryEXT", *types, ctypes.POINTER(ctypes.c_int))
@@ -129,18 +129,18 @@ class Choice:
 
     devices: list[Device]
     wish: str = ""
-    """What was wished for where any other will do, in the user's words; empty: nothing was, or only that will do."""
+    """Device wished for where any other will do, in the user's words; empty: no wish, or only that device will do."""
     is_missing: bool = False
     """Whether what was wished for is not there."""
 
 
 _SOFTWARE_VARIABLE = "LIBGL_ALWAYS_SOFTWARE"
-"""Of Mesa, which then opens nothing else."""
+"""Environment variable of Mesa: where it is true, Mesa opens nothing but its software device."""
 _RANKS = {DeviceKind.DISCRETE: 0, DeviceKind.UNKNOWN: 1, DeviceKind.INTEGRATED: 2, DeviceKind.VIRTUAL: 3}
 
 
 def choose(text: str, devices: Sequence[Device]) -> Choice:
-    """What a user's words mean: "" cards before the rest, a number, an identity, or a kind.
+    """Choose devices by a user's words: "" cards before the rest, a number, an identity, or a kind.
 
     With ``?`` behind it, any other will do where that is not there; what follows the ``?`` is its name for messages.
     Then a card that has moved to another place of its bus is found as well, if it is the only one of its make.

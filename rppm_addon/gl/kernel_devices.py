@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Linux tells of a graphics device: where it sits, who made it, its driver and memory, and of which kind it is."""
+"""Graphics devices as Linux describes them: their places, makers, drivers, memory and kinds."""
 
 import contextlib
 import ctypes
@@ -17,7 +17,7 @@ class DeviceKind(enum.StrEnum):
     INTEGRATED = "integrated"
     """Part of the processor, whose memory it shares."""
     VIRTUAL = "virtual"
-    """Of a virtual machine."""
+    """A device of a virtual machine."""
     SOFTWARE = "software"
     """The processor itself."""
     UNKNOWN = "unknown"
@@ -25,11 +25,11 @@ class DeviceKind(enum.StrEnum):
 
 @dataclass(frozen=True)
 class KernelDevice:
-    """What is known without opening the device."""
+    """Facts about a device that are known without opening it."""
 
     kind: DeviceKind
     driver: str
-    """Of the kernel, such as amdgpu."""
+    """The kernel's driver, such as amdgpu."""
     maker: str
     """Empty where it is none of those that are known."""
     identity: str
@@ -44,7 +44,7 @@ _INTEL_INTEGRATED = "0000:00:02.0"
 
 
 def kernel_device(file: str, sysfs: Path = Path("/sys")) -> KernelDevice | None:
-    """What the kernel knows of the device behind a file such as /dev/dri/renderD128; None where it tells nothing."""
+    """Read the kernel's facts about the device of a file such as /dev/dri/renderD128; None where it tells nothing."""
     try:
         number = Path(file).stat().st_rdev
         folder = sysfs / "dev" / "char" / f"{os.major(number)}:{os.minor(number)}" / "device"

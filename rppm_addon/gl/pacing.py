@@ -15,13 +15,13 @@ from dataclasses import dataclass
 from .context import Context
 
 LONGEST_SECONDS = 0.2
-"""That the device may be kept by one piece."""
+"""Seconds that one piece may keep the device."""
 LONGEST_SECONDS_BESIDE_WINDOW = 0.015
 """The same, while somebody works in a window that the device draws."""
 _AIM = 0.5
-"""Of the longest: items differ in what they cost."""
+"""Fraction of the longest time that a piece is to take: items differ in what they cost."""
 _FIRST_ITEMS = 64
-"""Of a program whose speed is not known."""
+"""Items of the first piece of a program whose speed is not known."""
 _FEWEST_ITEMS = 16
 """Fewer would leave parts of a device idle."""
 _FORGETTING = 0.97
@@ -35,9 +35,9 @@ class Pace:
     seconds_per_item: float | None = None
     """None where nothing is known."""
     most_seconds: float = 0.0
-    """Of all items, the longest lately."""
+    """Seconds that all items together took, the longest lately."""
     epoch: int = 0
-    """Of Pacing.forget."""
+    """Count of the calls to Pacing.forget at the program's last run."""
     stopwatch: "_Stopwatch | None" = None
 
     def learn(self, items: int | None, seconds: float) -> None:
@@ -57,9 +57,9 @@ class Pacing:
         """Seconds that what the device was given since it was last told to begin will take."""
         self._epoch = 0
         self.most_seconds = LONGEST_SECONDS
-        """That the device may be kept by one piece; share_with_window sets it."""
+        """Seconds that one piece may keep the device; share_with_window sets it."""
         self.pieces = 0
-        """Of work that was cut, so far."""
+        """Pieces that work was cut into, so far."""
 
     def share_with_window(self, shares: bool) -> None:
         """Whether somebody works in a window meanwhile, which waits for the device unless that is the processor."""
@@ -67,7 +67,7 @@ class Pacing:
         self.most_seconds = LONGEST_SECONDS_BESIDE_WINDOW if waits else LONGEST_SECONDS
 
     def forget(self) -> None:
-        """What comes may take longer than what has been measured."""
+        """Measure speeds anew, as what comes may take longer than what has been measured."""
         self._epoch += 1
 
     def run(
@@ -104,7 +104,7 @@ class Pacing:
         return _AIM * self.most_seconds
 
     def _seconds_of(self, work: Callable[[], None]) -> float:
-        """Of the device, which has nothing else to do."""
+        """Run work and return the seconds that it takes the device, which has nothing else to do."""
         start = time.perf_counter()
         work()
         self._context.finish()
@@ -177,7 +177,7 @@ class _Stopwatch:
 
     @property
     def seconds(self) -> float | None:
-        """That are not told yet; None as long as the device has not come to their end."""
+        """Seconds from start to stop, told once: None after that, and until the device has come to their end."""
         if not self.is_running or not self._value(1, _QUERY_RESULT_AVAILABLE):
             return None
         self.is_running = False

@@ -42,14 +42,14 @@ ITERATION = "Iteration"
 FIRST_INVOCATION = "first_invocation"
 """The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
 Block = moderngl.Buffer | BufferRange
-"""What is bound as a storage block."""
+"""Buffer, or range of one, that is bound as a storage block."""
 Bindable = Block | moderngl.Texture
-"""What is bound by name: a storage block, or the texture of a sampler."""
+"""Object that is bound by name: a storage block, or the texture of a sampler."""
 Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
 
 class _Program:
-    """What compute and draw programs share: bindings by block name, texel buffers, and the parameter block."""
+    """Base class of compute and draw programs: bindings by block name, texel buffers, and the parameter block."""
 
     def __init__(self, context: Context, pacing: Pacing, sources: list[Source]) -> None:
         self.context = context
@@ -174,7 +174,7 @@ class ComputeProgram(_Program):
         self._run(groups, lambda: self._program.run_indirect(arguments, offset))
 
     def _run(self, groups: Callable[[], int], whole: Callable[[], None]) -> None:
-        """What is bound, in pieces where it takes long, and order the writes."""
+        """Run the program with what is bound, in pieces where it takes long, and order the writes."""
         if self._is_divisible:
             self._pacing.run(self._pace, groups, whole, self._run_groups)
         else:
@@ -255,7 +255,7 @@ class DrawProgram(_Program):
 
 
 def _quads_of(command: moderngl.Buffer) -> int:
-    """That an indirect draw command asks for. Waits for the device."""
+    """Return the number of quads that an indirect draw command asks for. Waits for the device."""
     return struct.unpack("=I", command.read(4))[0] // _QUAD
 
 
@@ -272,7 +272,7 @@ class ProgramMaker:
         self.pacing = Pacing(context)
         unsigned = ctypes.c_uint
         self.set_uniform = context.function("glProgramUniform1ui", None, unsigned, ctypes.c_int, unsigned)
-        """Of a program, at a location."""
+        """GL function that sets a uint uniform of a program, at a location."""
         self._linker = Linker(context)
         self.compiler: BackgroundCompiler | None = None
         """Where there is a core to spare."""
@@ -326,7 +326,7 @@ class ProgramLibrary:
         self._maker = ProgramMaker(context)
         self._programs: dict[tuple, ComputeProgram | DrawProgram] = {}
         self._sources: dict[tuple, Source] = {}
-        """Of programs that were expected."""
+        """Sources of programs that were expected, by path and inserts."""
         self._scene_defines: dict[str, object] = {}
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
@@ -345,7 +345,7 @@ class ProgramLibrary:
             self._scene_defines = before
 
     def _defines(self, paths: Sequence[str], defines: Mapping[str, object] | None) -> dict[str, object]:
-        """Of programs of files, in which whether they know what others do not makes a difference."""
+        """Return the defines of programs of files: those given, and those of the scene that their sources ask for."""
         given = dict(defines or {})
         if not self._scene_defines:
             return given

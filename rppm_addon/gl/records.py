@@ -32,10 +32,10 @@ KINDS = {
 class _Member:
     name: str
     kind: str
-    """Of KINDS, or another record's name."""
+    """A key of KINDS, or another record's name."""
     offset: int
     count: int = 0
-    """Of an array of records; else 0."""
+    """Length of an array of records; 0 for other members."""
 
 
 def _format(member: _Member) -> np.dtype:

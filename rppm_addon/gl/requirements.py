@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What programs need of a device beyond what OpenGL 4.3 promises, by OpenGL's names of the limits.
+"""Device limits that programs need beyond what OpenGL 4.3 promises, by OpenGL's names of the limits.
 
 The numbers follow from the shaders' declarations; a test computes them anew. Of all else they need less than every
 device has: work groups of 1024 invocations, 16 texture units, textures of 16384 texels a side, and 8 images, for

@@ -48,7 +48,7 @@ class Source:
 
     @property
     def suffix(self) -> str:
-        """Of its file's name: which stage it is."""
+        """Suffix of the file's name, which says which stage it is."""
         return Path(self.files[0]).suffix
 
     @property

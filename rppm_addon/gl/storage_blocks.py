@@ -26,6 +26,6 @@ class StorageBlock:
 
     @property
     def records(self) -> list[Record]:
-        """Of its members, as far as these are records."""
+        """Record types of its members, each once; members of plain kinds have none."""
         kinds = _MEMBER_TYPE.findall(self.members)
         return [Record.registry[kind] for kind in dict.fromkeys(kinds) if kind in Record.registry]

@@ -18,14 +18,14 @@ import moderngl
 from .context import TEXEL_SIZE, Context
 
 IMAGES_FOR_LARGE = 8
-"""That every device has: the most arrays of a program that are larger than a storage block."""
+"""Images that every device has: the most arrays of a program that may be larger than a storage block."""
 MOST_ADDED = TEXEL_SIZE + 256
 """Bytes that allocated_size adds, at most."""
 _TEXTURE_BUFFER, _READ_ONLY, WRITE_ONLY = 0x8C2A, 0x88B8, 0x88B9
 FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}
 """By their names in shaders."""
 _BYTES = {0x8236: 4, 0x823C: 8, 0x8D70: 16, 0x8814: 16}
-"""Of a texel, by format."""
+"""Bytes of a texel, by format."""
 
 
 def allocated_size(size: int) -> int:
@@ -51,7 +51,7 @@ class TexelBuffer:
 
     @property
     def texel_bytes(self) -> int:
-        """Of the smallest texels."""
+        """Bytes of the smallest texels that the buffer is bound with."""
         return _BYTES[self.format] if self.words_unit is None else _BYTES[FORMATS["r32ui"]]
 
 

@@ -13,7 +13,7 @@ MOST_IMAGES = 16
 """Images of a compute shader that llvmpipe has had at all times."""
 _FORMAT_BY_WORDS = {1: "r32ui", 2: "rg32ui", 4: "rgba32ui"}
 _WORDS = 4
-"""Of the largest texels."""
+"""Words of 32 bits in the largest texels."""
 
 _IMAGE = re.compile(
     r"layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform\s+u?imageBuffer\s+(\w+)"
@@ -38,7 +38,7 @@ _MARK = "\0"
 
 
 def declared_texel_buffers(text: str) -> dict[str, TexelBuffer]:
-    """Those that a shader with DEFINE declares, by the names of the blocks that they stand for."""
+    """Find the texel buffers that a shader with DEFINE declares, by the names of the blocks that they stand for."""
     return {name: TexelBuffer(int(unit), FORMATS[kind]) for kind, unit, name in _IMAGE.findall(text)}
 
 
@@ -91,7 +91,7 @@ def read_as_texels(
 
 
 def _asks_for_length(text: str, array: str) -> bool:
-    """Of the array, which texel buffers do not tell."""
+    """Return whether a shader asks for the array's length, which texel buffers do not tell."""
     return re.search(rf"\b{array}\s*\.\s*length\b", text) is not None
 
 
@@ -215,7 +215,7 @@ def _store_function(name: str, item: str, array: str, words: int, member: str | 
 
 
 def _values_of(value: str, item: str, first: int = 0, count: int = 0) -> Iterator[tuple[str, str, int]]:
-    """Of a record, of an array of count of them, or of a kind: GLSL of its values, their kinds and first words."""
+    """Yield GLSL, kind and first word of each value of a record, of an array of count of them, or of a kind."""
     if count:
         for k in range(count):
             yield from _values_of(f"{value}[{k}]", item, first + k * _size(item))

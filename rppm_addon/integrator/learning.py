@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What iterations learn for those that come: how wide the radii have to be, and where photons are sent."""
+"""Learning from iterations for later ones: how wide the radii have to be, and where photons are sent."""
 
 import math
 from dataclasses import dataclass
@@ -31,9 +31,11 @@ from .pilot_view import PilotView, at_pixels
 from .stages.photons import Photons
 
 _MOST_LEAVING = 0.25
-"""Of gathering rays: where more leave the scene, rays find the world's light as well as photons or better."""
+"""Fraction of gathering rays that leave the scene, below which photons may share the world's direct light. Where more
+leave, rays find that light as well as photons or better."""
 _LEAST_UNCOVERED = 0.02
-"""Of those that leave: where more pass portals, shadow rays find nearly all of it there."""
+"""Least fraction of the gathering rays leaving the scene that pass no portal, for photons to share the world's direct
+light. Where more rays pass portals, shadow rays find nearly all of that light there."""
 
 
 _WEIGHED_AT = 64
@@ -44,7 +46,7 @@ _PHOTONS_OF_DISKS, _FEWEST_OF_DISKS = 0.25, 1 << 11
 
 @dataclass(frozen=True)
 class BandFindings:
-    """What a band of an iteration that is learned from tells of photons."""
+    """Findings about photons in a band, from an iteration that is learned from."""
 
     photons_taken: np.ndarray
     """(pixels, 2): SplatSums.photons_taken."""
@@ -88,9 +90,11 @@ class Learning:
         leaves_little = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
         self._shares_world_light = leaves_little and pilot.uncovered_fraction >= _LEAST_UNCOVERED
         self.wide_radius = 0.0
-        """Of the first iteration, meters: what global photons are spread over. Known once its photons are."""
+        """Radius over which global photons are spread, meters, before it shrinks: that of the first iteration. Known
+        once the photons of that iteration are."""
         self.global_photons_found: float | None = None
-        """What photons_found, or photons_found_by_gathering, says of the last iteration, if they were counted."""
+        """Result of photons_found, or photons_found_by_gathering, for the last iteration; None if no photons were
+        counted."""
 
     def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
         """Radii of an iteration whose stored photons are known."""
@@ -100,7 +104,7 @@ class Learning:
         return self.radii(iteration.number)
 
     def radii(self, number: int) -> Radii:
-        """Those of the iteration of this number, from 1, as far as it is known."""
+        """Return the radii of the iteration of this number, from 1, as far as they are known."""
         shrunk = shrinkage(number, self._alpha)
         return Radii(*self.limits, self.wide_radius, self._scale, self._most_factor, shrunk)
 

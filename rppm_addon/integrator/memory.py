@@ -33,12 +33,12 @@ class Memory:
 
     @property
     def ppm_bytes(self) -> int:
-        """Of all that the paper counts."""
+        """Bytes of all buffers that the paper counts."""
         return sum(self.ppm.values())
 
     @property
     def paper_bytes(self) -> int:
-        """What the paper's PPM buffers would take: 32 R + 64 M L."""
+        """Bytes that the paper's PPM buffers would take: 32 R + 64 M L."""
         return 32 * self.pixels + 64 * self.photons * self.segments
 
     @property
@@ -48,7 +48,7 @@ class Memory:
 
     @property
     def total_bytes(self) -> int:
-        """Of everything on the device."""
+        """Bytes of everything on the device."""
         return self.ppm_bytes + sum(self.working_bytes.values())
 
     def as_dict(self) -> dict[str, object]:

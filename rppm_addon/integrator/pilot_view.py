@@ -19,23 +19,23 @@ from .stages.final_gather import GATHERING_VERTEX
 from .stages.stage_set import StageSet
 
 MOST_PIXELS = 1 << 14
-"""Of the first one: the percentiles of so many footprints are those of all within a percent."""
+"""Most pixels of the first pilot view. The percentiles of so many footprints are those of all within a percent."""
 FEWEST_HITS = 1 << 8
 """With less, what is seen is small in the picture, and all pixels have to look for it."""
 MOST_GATHERING_RAYS = 1 << 11
-"""That are followed to where they end."""
+"""Most gathering rays that are followed to where they end."""
 
 
 @dataclass(frozen=True)
 class PilotView:
-    """What the camera sees first."""
+    """Findings of a pilot view about the camera's first hits and the gathering rays from there."""
 
     footprints: np.ndarray
     """(rows, columns) Eq. 3 radii of the camera's first hits, meters; 0 where there is no importon."""
     leaving_fraction: float
-    """Of the gathering rays from there, those that leave the scene; nan where none was followed."""
+    """Fraction of the gathering rays from the first hits that leave the scene; nan where none was followed."""
     uncovered_fraction: float = 1.0
-    """Of these, those that pass no portal."""
+    """Fraction of the gathering rays leaving the scene that pass no portal."""
 
 
 def pilot_sizes(width: int, height: int) -> list[tuple[int, int]]:

@@ -126,7 +126,7 @@ class ProgressivePhotonMapper:
             self.iteration = iterations
 
     def state(self) -> RenderState:
-        """What iterations to come rest on; to be asked for between iterations."""
+        """Return the state that later iterations depend on; to be called between iterations."""
         return read_state(self.stages, self.device_scene.lights, self.learning, self.iteration, self._skipped)
 
     def resume(self, state: RenderState) -> None:
@@ -144,12 +144,12 @@ class ProgressivePhotonMapper:
 
     @property
     def stages(self) -> StageSet:
-        """Those of the iterations, once a scene was built."""
+        """Stages of the iterations, once a scene was built."""
         return require(self._stages)
 
     @property
     def learning(self) -> Learning:
-        """What the iterations learn, once a scene was built."""
+        """Learning of the iterations, once a scene was built."""
         return require(self._learning)
 
     @property
@@ -163,7 +163,7 @@ class ProgressivePhotonMapper:
         return max(self.iteration - self._skipped, 0)
 
     def measure_noise(self) -> float:
-        """That of the film's noisiest block (NoiseEstimate.measure); only with use_adaptive_sampling."""
+        """Return the noise of the film's noisiest block (NoiseEstimate.measure); only with use_adaptive_sampling."""
         estimate, exposure = self.stages.noise_estimate, self.scene.exposure
         return estimate.measure(self.device_scene.context, self.film.radiance, exposure, self._skipped, self.iteration)
 
@@ -233,7 +233,7 @@ class ProgressivePhotonMapper:
 
     @property
     def acceleration(self) -> AccelerationStructure:
-        """What the scene's rays are traced through."""
+        """Acceleration structure that the scene's rays are traced through."""
         return self.device_scene.acceleration.structure
 
     @property

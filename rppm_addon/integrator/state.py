@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the iterations to come rest on, beside scene, settings and their own numbers."""
+"""State that later iterations depend on, beside scene, settings and their own numbers."""
 
 from dataclasses import dataclass
 
@@ -24,11 +24,12 @@ class RenderState:
     photon_counts: PhotonCounts
     """Where automatic, those that are known so far."""
     photon_noise: NoiseVariances
-    """What the photons to come are chosen by, where automatic."""
+    """Noise variances by which the number of photons of later iterations is chosen, where it is automatic."""
     wide_radius: float
-    """Of the first iteration, meters: what global photons are spread over."""
+    """Radius over which global photons are spread, meters, before it shrinks: that of the first iteration."""
     global_photons_found: float | None
-    """What photons_found, or photons_found_by_gathering, says of the last iteration, if the next one learns from it."""
+    """Result of photons_found, or photons_found_by_gathering, for the last iteration; None if the next one does not
+    learn from it."""
     radiance: np.ndarray
     """(height, width, 4) float32 mean of radiance W/(m^2 sr) and alpha, row 0 at the bottom, before exposure."""
     passes: dict[str, np.ndarray]
@@ -56,7 +57,7 @@ class RenderState:
 
 
 def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: int, skipped: int) -> RenderState:
-    """What iterations to come rest on, after this one."""
+    """Return the state that iterations after this one depend on."""
     film = stages.film
     return RenderState(
         skipped=skipped,

@@ -36,7 +36,7 @@ SHAPES = {
     "glass_entering_average": _PLANE,
     "glass_leaving_average": _PLANE,
 }
-"""Of all tables, in the order in which the device has them."""
+"""Shapes of all tables by name, in the order in which the device has them."""
 
 
 def _starts() -> dict[str, int]:
@@ -46,7 +46,7 @@ def _starts() -> dict[str, int]:
 
 
 def length() -> int:
-    """Of the list of all tables."""
+    """Return the length of the list of all tables."""
     return sum(int(np.prod(shape)) for shape in SHAPES.values())
 
 
@@ -157,7 +157,7 @@ def compute(samples: int = SAMPLES) -> dict[str, np.ndarray]:
 
 
 def load_lobes() -> dict[str, np.ndarray]:
-    """Those that compute() gave."""
+    """Load the tables that compute() gave."""
     with np.load(_FILE, allow_pickle=False) as file:
         return {name: file[name].astype(np.float32) for name in SHAPES if name in file}
 

@@ -35,7 +35,7 @@ _IMPLICIT = {
     "position": "world_position(surface)",
     "tangent": "default_tangent(surface)",
 }
-"""What inputs stand for whose default is a name."""
+"""GLSL expressions for inputs whose default is a name, by that name."""
 
 
 class GraphError(RppmError):
@@ -50,15 +50,15 @@ class Resource:
     """table, image or attribute."""
     node: int
     name: str = ""
-    """Of an attribute that is not the node's own."""
+    """Name of an attribute that is not the node's own."""
 
 
 @dataclass(frozen=True)
 class NodeRayCounts:
-    """What nodes of a text ask of rays."""
+    """Counts of the rays that the nodes of a text ask for."""
 
     places: int = 0
-    """Of what rays find, for each hit."""
+    """Number of places for what rays find, for each hit."""
     levels: int = 0
     """How many times rays are traced: those of a node may depend on what those of another found."""
     samples: int = 0
@@ -67,7 +67,7 @@ class NodeRayCounts:
     """Whether there are rays from any place, as of Raycast nodes."""
 
     def united(self, other: "NodeRayCounts") -> "NodeRayCounts":
-        """Of graphs that have their text in common."""
+        """Return the counts for graphs that have their text in common."""
         return replace(self, samples=max(self.samples, other.samples))
 
 
@@ -97,7 +97,7 @@ NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout Clos
     builder.closure.diffuse = vec3(0.8);
 }
 """
-"""What stands in for a graph that cannot be compiled: a gray surface."""
+"""GLSL that stands in for a graph that cannot be compiled: a gray surface."""
 
 
 class _Scope:
@@ -107,7 +107,7 @@ class _Scope:
         self.depth = depth
         """How many heights of bumps lie around it."""
         self.ray_level = ray_level
-        """Of the first rays that its nodes ask for: before, those that its normal depends on are traced."""
+        """Level of the first rays that its nodes ask for. Rays that its normal depends on are traced before."""
         self.lines: list[str] = []
         self.known: dict[int, dict[str, str]] = {}
 

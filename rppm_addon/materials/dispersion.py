@@ -83,7 +83,7 @@ def _cumulated(density: np.ndarray) -> np.ndarray:
 
 
 def mean(values: np.ndarray) -> np.ndarray:
-    """Of (STEPS + 1, ...) values at the wavelengths of the table, over all paths."""
+    """Return the mean over all paths of (STEPS + 1, ...) values at the wavelengths of the table."""
     return 0.5 * (values[1:] + values[:-1]).mean(axis=0)
 
 

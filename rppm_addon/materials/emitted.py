@@ -60,7 +60,7 @@ def asks_for_path(graph: NodeGraph) -> bool:
 
 @dataclass(frozen=True)
 class LightVariation:
-    """What of a light its emission depends on."""
+    """Variables on which the emission of a light depends."""
 
     place: bool
     """Its normal or the place on it."""
@@ -85,7 +85,7 @@ _BY_BOTH = {"fresnel", "layer_weight"}
 
 
 def light_variation(graph: NodeGraph) -> LightVariation:
-    """What the emission of a light's graph depends on."""
+    """Return the variables on which the emission of a light's graph depends."""
     nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
     asked = {
         (graph.nodes[value.node].kind, value.output)

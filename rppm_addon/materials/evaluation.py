@@ -42,7 +42,7 @@ _CHUNK = 1 << 18
 
 
 class MapShape(enum.IntEnum):
-    """What the pixels of a light's map stand for."""
+    """Kinds of maps of lights, by what the pixels of a map stand for."""
 
     NORMALS = 1
     """Normals of a sphere, equirectangular."""

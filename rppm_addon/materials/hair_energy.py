@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What rough glass loses by single scattering, in closed form for shaders of fibers, which have no tables at hand.
+"""Energy loss of rough glass by single scattering, in closed form for shaders of fibers, which have no tables at hand.
 
-Of the tables of albedo_tables.py, glass_entering and glass_leaving, 1 - albedo is fitted by roughness^2 times a
-polynomial in roughness (to the 4th degree), 1 - cosine (to the 5th), and z, between indices of 1.25 and 2.25: of
-albedos of roughness up to 0.85 and cosines from 0.05 on, the error is 0.4 % entering and 1 % leaving (root of the mean
-square).
+The fit is made to the tables glass_entering and glass_leaving of albedo_tables.py, between indices of 1.25 and 2.25:
+1 - albedo is fitted by roughness^2 times a polynomial in roughness (to the 4th degree), 1 - cosine (to the 5th), and z.
+The root mean square error of albedos is 0.4 % entering and 1 % leaving, for roughness up to 0.85 and cosines from 0.05
+on.
 """
 
 import numpy as np

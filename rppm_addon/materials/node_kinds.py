@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a kind of node is: its sockets, its options, and the GLSL function that computes it."""
+"""Kinds of nodes: their sockets, their options, and the GLSL functions that compute them."""
 
 import enum
 from dataclasses import dataclass, field
@@ -44,14 +44,16 @@ class NodeKind:
     options: dict[str, tuple] = field(default_factory=dict)
     """Values that each option can take: they select code."""
     resources: tuple[str, ...] = ()
-    """What the node needs besides: "table", where its table starts in material_data; "image", the number of its
-    image; "attribute", the number of its mesh attribute."""
+    """Resources that the node needs besides: "table", where its table starts in material_data; "image", the number of
+    its image; "attribute", the number of its mesh attribute."""
     surface: bool = False
     ray_places: int = 0
-    """Of rays that it asks for, which are traced before its value is known (shaders/materials/node_rays.glsl), how many
-    NODE_RAY hold what is asked and found. An input "samples" says how many rays; without it, it is one."""
+    """Number of NODE_RAY that hold what the node asks of rays and what these find. The rays are traced before the
+    node's value is known (shaders/materials/node_rays.glsl). An input "samples" says how many rays; without it, it is
+    one."""
     fallbacks: dict[str, str] = field(default_factory=dict)
-    """What is rendered in place of the node where an option has a value, or "" for any: users are told."""
+    """Replacement that is rendered in place of the node, by the value that an option has, or "" for any: users are
+    told."""
     function_option: str = ""
     """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
     passed: drivers take long to fold a choice among many at every call."""
@@ -78,7 +80,7 @@ class NodeKind:
         return function, literals
 
     def fallback(self, options: dict[str, Any]) -> str:
-        """What is rendered in place of a node with these options; "" where it is rendered as what it is."""
+        """Return what is rendered in place of a node with these options; "" where it is rendered as what it is."""
         values = ("", *(options.get(name, values[0]) for name, values in self.options.items()))
         return next((self.fallbacks[value] for value in values if value in self.fallbacks), "")
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 PIECE = 32
 """Statements, at least: 12 and less take longer."""
 MOST_PIECES = 32
-"""What llvmpipe does with loops grows with the square of their number."""
+"""Maximum number of pieces of a function: llvmpipe's work on loops grows with the square of their number."""
 _MOST_HELD = 16
 """Constants a statement that are held in an array; nodes that others were made between may be far apart."""
 _BEGIN = "for (uint once = 0u; once < uint(first != 0xFFFFFFFFu); ++once) {"

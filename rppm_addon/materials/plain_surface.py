@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a node graph comes to without being evaluated: one plain surface."""
+"""Reduction of a node graph, without evaluating it, to one plain surface."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from .node_kinds import SocketType
 from .nodes import KINDS
 
 GLASS_OPACITY = 0.3
-"""Of what lets light through by refraction: what is behind it has to be seen."""
+"""Opacity of the part of a surface that lets light through by refraction: what is behind it has to be seen."""
 _GRAY = np.full(3, 0.8)
 _MOST_PIXELS = 64
 """Along a side of an image, of which the mean is taken."""
@@ -41,7 +41,7 @@ class PlainSurface:
     glass: float
     """Share of what lets light through by refraction."""
     texture: "PlainTexture | None" = None
-    """What the color is the mean of, at least in part."""
+    """Texture whose mean the color is, at least in part; None if there is none."""
 
     @property
     def opacity(self) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands in for a material until its own program is compiled.
+"""Stand-ins that are rendered for materials until their own programs are compiled.
 
 All stand-ins have the same structure, so one program renders them: the plain surface of a graph (plain_surface.py) with
 the image of its color, a glossy or a glass part, transparency and emission.
@@ -14,7 +14,7 @@ from ..scene.node_graphs import NodeGraph
 from .plain_surface import mean_color, plain_surface
 
 _DARKEST = 1e-3
-"""Of an image's mean, as far as it may be brightened."""
+"""Lower limit of an image's mean where a color is divided by it: it limits how far the image may be brightened."""
 
 
 def stand_in_graph(graph: NodeGraph, images: Sequence[Image]) -> NodeGraph:

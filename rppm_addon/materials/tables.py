@@ -36,7 +36,7 @@ from .view_dependence import depends_on_view
 
 
 def default_material() -> Material:
-    """What faces without a material look like, as in Blender."""
+    """Return the material of faces that have none, as in Blender."""
     graph = NodeGraph()
     graph.surface = graph.add("bsdf_diffuse", "bsdf", color=(0.8, 0.8, 0.8))
     return Material("default", graph)
@@ -46,7 +46,8 @@ _DARK = "it gives nothing"
 
 
 def first_line(error: Exception) -> str:
-    """What a driver says first about a program, for messages of one line."""
+    """Return the first line of a driver's message with "error" in it, or else its first 200 characters, for messages of
+    one line."""
     return next((line for line in str(error).splitlines() if "error" in line.lower()), str(error).strip()[:200])
 
 
@@ -60,7 +61,7 @@ def _texels(image: Image) -> tuple[np.ndarray, TexelFormat]:
 
 @dataclass(frozen=True)
 class DisplacingGraph:
-    """What moves the vertices of a material's faces."""
+    """Compiled graph that displaces the vertices of a material's faces."""
 
     text: str
     """GLSL."""
@@ -200,7 +201,8 @@ class MaterialTables(BufferSet):
         self._scene = scene
 
     def _upload_images(self, images: list[Image]) -> None:
-        """Those that are the very objects of the last build are there. Whoever changes an image gives a new one."""
+        """Upload the images, unless they are the very objects of the last build. Whoever changes an image gives a new
+        one."""
         if same_members(images, self._images):
             return
         self._images = []  # should an upload fail

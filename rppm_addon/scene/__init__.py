@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is to be rendered, as plain NumPy dataclasses; no GL, no Blender."""
+"""The scene to be rendered, as plain NumPy dataclasses; no GL, no Blender."""
 
 from .camera import Aperture, Camera, Panorama, PanoramaKind, Texels
 from .images import Image

@@ -64,7 +64,7 @@ class Aperture:
     blades: int = 0
     """Corners of the opening; less than 3 is a disk."""
     rotation: float = 0.0
-    """Of the opening, radians."""
+    """Rotation of the opening, radians."""
     ratio: float = 1.0
     """Height over width of the opening."""
 
@@ -117,7 +117,7 @@ class Camera:
     aperture: Aperture | None = None
     """None is a pinhole: everything is in focus."""
     texels: Texels | None = None
-    """What is pictured in place of what lies before the camera; the window is then in texels, and orthographic."""
+    """Places on a mesh that are pictured in place of the view; the window is then in texels, and orthographic."""
 
     @property
     def is_sheared(self) -> bool:
@@ -127,7 +127,7 @@ class Camera:
 
     @property
     def pixel_size(self) -> float:
-        """Of a pixel's width: meters (orthographic) or radians; of projections that stretch, the mean."""
+        """Width of a pixel: meters (orthographic) or radians; the mean where the projection stretches."""
         across = self.window[1] - self.window[0]
         if self.panorama is not None:
             across *= self.panorama.angle

@@ -17,7 +17,7 @@ _NUMBERS = {int: np.int64, float: np.float64}
 
 
 def encode_columns(members: Sequence[object], kind: type, keep: _Keep) -> dict:
-    """What json can write of members of a dataclass ``kind``; ``keep`` as for documents.encode.
+    """Return members of a dataclass ``kind`` as json can write them; ``keep`` as for documents.encode.
 
     Raises TypeError for a member of another type, or with something in it that no document can hold.
     """
@@ -88,7 +88,7 @@ def _as_array(values: list, hint: object) -> np.ndarray | None:
 
 
 def _keys(values: list, hint: object) -> Sequence[Hashable]:
-    """What tells values of a field apart; numbers in containers by how they are written, for -0.0 equals 0.0."""
+    """Return keys that tell values of a field apart; numbers in containers by their text, for -0.0 equals 0.0."""
     if hint is np.ndarray:
         return list(map(id, values))
     if typing.get_origin(hint) in {list, dict, tuple}:

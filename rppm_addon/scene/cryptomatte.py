@@ -17,7 +17,7 @@ from .scene import Scene
 OBJECTS, MATERIALS, ASSETS = LAYERS = ("CryptoObject", "CryptoMaterial", "CryptoAsset")
 """Layers: the passes of each are named after it, with a number behind."""
 DEFAULT_MATERIAL = "default_surface"
-"""What Cycles calls the material of faces without one."""
+"""Name that Cycles gives to the material of faces without one."""
 
 
 @functools.lru_cache(1 << 16)
@@ -71,7 +71,7 @@ def split(entries: Iterable[RenderPass], pairs: np.ndarray) -> dict[str, np.ndar
 
 
 def joined(entries: Iterable[RenderPass], passes: Mapping[str, np.ndarray]) -> np.ndarray:
-    """What was split. KeyError where a pass misses."""
+    """Return the pairs (height, width, n, 2) that split took apart. Raises KeyError where a pass is missing."""
     parts = np.concatenate([passes[entry.name] for entry in entries], axis=-1)
     return parts.reshape(*parts.shape[:2], -1, 2)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of a member of the scene where it is declared: its shape, type and range. gate.py holds scenes to it."""
+"""Declarations of the shape, type and range of the scene's members. scene/validation.py checks scenes against them."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -12,21 +12,21 @@ FLOAT_MAX = 3.4028234663852886e38
 
 @dataclass(frozen=True)
 class Declared:
-    """What a field's values are like, beside their type."""
+    """Constraints on the values of a field, beside their type."""
 
     shape: tuple[int | str, ...] | None = None
-    """Of arrays; a name is a number that is the same in all arrays of the record."""
+    """Shape of arrays; a name stands for a number that is the same in all arrays of the record."""
     types: str = "fiu"
-    """Of arrays: the kinds of their dtypes (numpy), or the name of the only one."""
+    """Kinds of dtypes (numpy) that arrays may have, or the name of the only dtype."""
     minimum: float | None = None
     maximum: float | None = None
     """Range, both ends included; None is no bound."""
     finite: bool = True
     """Whether what is no number is refused. Where not, the renderer leaves out what it spoils."""
     below: str = ""
-    """Of indices: what they count, a name of ``shape`` or a list of the scene."""
+    """Name of what indices count: one of ``shape``, or a list of the scene."""
     choices: tuple[str, ...] = ()
-    """Of texts: all there are."""
+    """All values that texts may have."""
 
 
 _NOTHING = Declared()
@@ -38,5 +38,5 @@ def declared(*shape: int | str, **more: Any) -> dict[str, Declared]:
 
 
 def declared_of(field: dataclasses.Field) -> Declared:
-    """What is said of a field."""
+    """Return the declaration of a field; the default one where it has none."""
     return field.metadata.get(_KEY, _NOTHING)

@@ -22,7 +22,7 @@ class Arrays(typing.Protocol):
 
 
 def encode(value: object, keep: Callable[[np.ndarray], int | str]) -> object:
-    """What json can write of a dataclass or a part of one; ``keep`` takes an array and returns its reference."""
+    """Return a dataclass or a part of one as json can write it; ``keep`` takes an array and returns its reference."""
     kind: typing.Any = type(value)
     if kind in _PLAIN:
         return value

@@ -38,7 +38,7 @@ NO_MEMORY = "there is not enough memory; lower the resolution, simplify the scen
 
 
 def unforeseen(error: Exception, remedy: str) -> str:
-    """What users are told of an error that is none of the above; a lack of memory is their own to mend."""
+    """Return the message to users for an error that is none of the above. A lack of memory has a remedy of its own."""
     if isinstance(error, MemoryError):
         return NO_MEMORY
     return f"RPPM failed unexpectedly ({type(error).__name__}: {error}); {remedy}"

@@ -13,7 +13,7 @@ ALL_SETS = -1
 
 @dataclass(frozen=True, slots=True)
 class LightLinking:
-    """Of an object as what is lit, and as what emits. Names and numbers are Cycles'."""
+    """Light and shadow linking of an object, as one that is lit and one that emits. Names and numbers are Cycles'."""
 
     receiver_light_set: int = field(default=0, metadata=declared(minimum=0, maximum=LIGHT_SETS - 1))
     """The set of objects to be lit that it is in."""

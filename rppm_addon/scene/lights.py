@@ -22,7 +22,7 @@ class LightKind(enum.Enum):
 
 
 UNLIMITED_BOUNCES = 1024
-"""Of light, as Blender has it."""
+"""Value of ``max_bounces`` that means no limit, as Blender has it."""
 
 
 @dataclass
@@ -56,7 +56,7 @@ class Light:
     is_portal: bool = False
     """AREA: it gives no light, but says where the world's comes in, to the side that it faces."""
     visibility: RayVisibility = RayVisibility.ALL
-    """What sees the light itself or is lit by it: the camera, diffuse surfaces, reflections, transmissions."""
+    """Kinds of rays that see the light itself or are lit by it: camera, diffuse, glossy and transmission rays."""
     graph: NodeGraph | None = None
     """Its emission multiplies ``strength``; None is 1."""
     of_world: bool = False
@@ -75,12 +75,12 @@ class Light:
 
 @dataclass
 class Mist:
-    """What the pass Mist shows: 0 up to ``start``, 1 from ``start`` + ``depth`` on, meters."""
+    """Range of the pass Mist: 0 up to ``start``, 1 from ``start`` + ``depth`` on, meters."""
 
     start: float = 0.0
     depth: float = 100.0
     exponent: float = 1.0
-    """Of the way between."""
+    """Exponent of the fraction of the way between."""
 
 
 @dataclass
@@ -94,6 +94,6 @@ class World:
     light_group: str = ""
     """As of a light."""
     visibility: RayVisibility = RayVisibility.ALL
-    """What sees it or is lit by it, as of a light."""
+    """Kinds of rays that see the world or are lit by it, as of a light."""
     max_bounces: int = field(default=UNLIMITED_BOUNCES, metadata=declared(minimum=0, maximum=UNLIMITED_BOUNCES))
     """As of a light, where the world is not even; the light of one that is has no limit, as in Cycles."""

@@ -19,7 +19,7 @@ class Material:
     transparent_shadow: bool = True
     """Whether light of light objects and meshes passes where the surface is transparent; the world's always does."""
     pass_index: int = 0
-    """Of the pass Material Index."""
+    """Value in the pass Material Index."""
     abbe_number: float | None = field(default=None, metadata=declared(minimum=1.0))
     """V_d of what refracts light: by it the index depends on the wavelength, and that of the nodes is n_d. None: all
     wavelengths have the same."""

@@ -17,7 +17,7 @@ UNDISPLACED = ".undisplaced"
 
 
 class AttributeDomain(enum.Enum):
-    """What an attribute has a value for."""
+    """Kind of mesh element; an attribute has a value for each element of its kind."""
 
     POINT = "point"
     CORNER = "corner"
@@ -45,7 +45,7 @@ class Dicing:
 
 
 class MeshShape(enum.Enum):
-    """What the triangles of a mesh stand for."""
+    """Shape that the triangles of a mesh stand for."""
 
     SURFACE = "surface"
     """Themselves."""
@@ -122,7 +122,7 @@ class RayVisibility(enum.IntFlag):
 
 @dataclass(slots=True)
 class Particle:
-    """What the Particle Info node gives for the particle that an instance stands for."""
+    """Outputs of the Particle Info node for the particle that an instance stands for."""
 
     index: float = field(default=0.0, metadata=declared(finite=False))
     random: float = field(default=0.0, metadata=declared(finite=False))

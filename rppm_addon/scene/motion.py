@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of a scene moves while the shutter is open."""
+"""Motion of a scene's members while the shutter is open."""
 
 from dataclasses import dataclass, field
 
@@ -48,7 +48,7 @@ class CameraMovement:
 
 @dataclass
 class Shutter:
-    """What of a scene moves while its picture is taken; the scene's own members are those of the middle."""
+    """Motion of a scene's members while its picture is taken. The scene holds them as they are in the middle."""
 
     curve: np.ndarray = field(metadata=declared("shares", finite=False))
     """(n,) float64, 0 or more: how far the shutter is open in each nth of its time."""

@@ -117,7 +117,7 @@ def _between(times: np.ndarray, time: float) -> tuple[int, float]:
 
 
 def _mixed(values: np.ndarray, first: int, part: float) -> np.ndarray:
-    """What is the same in both keys comes out unchanged."""
+    """Interpolate from the key ``first`` to the next one; values that are equal in both come out unchanged."""
     return values[first] + values.dtype.type(part) * (values[first + 1] - values[first])
 
 

@@ -42,7 +42,7 @@ class AovOutput:
     """An AOV Output node: what a material writes into a pass of a name of the user's."""
 
     name: str
-    """Of the pass."""
+    """Name of the pass."""
     color: object = (0.0, 0.0, 0.0)
     """A float, a tuple of three floats or a Link; taken where the pass is one of colors."""
     value: object = 0.0

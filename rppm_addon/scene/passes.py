@@ -19,7 +19,7 @@ NOTHING_HIT = 1e10
 
 
 class Accumulation(enum.Enum):
-    """What becomes of the values that iterations find for a pixel."""
+    """How the values that iterations find for a pixel enter the pass."""
 
     MEAN = 0
     """Their mean, with ``nothing`` from iterations that see the background."""
@@ -37,7 +37,7 @@ class Accumulation(enum.Enum):
 
 
 class PassKind(enum.Enum):
-    """What channels mean, as Blender's RenderEngine.register_pass has it."""
+    """Meaning of a pass's channels, as Blender's RenderEngine.register_pass has it."""
 
     VALUE = "VALUE"
     VECTOR = "VECTOR"
@@ -69,9 +69,9 @@ class RenderPass:
     is_aov: bool = False
     """Whether AOV Output nodes of materials give it (aov_passes)."""
     light_group: str = ""
-    """Of whose light it is the picture (light_group_passes)."""
+    """Light group whose light the pass shows (light_group_passes); "" is none."""
     level: int = 0
-    """Of COVERAGE: with so many pairs of lower levels before its own."""
+    """Number of pairs of lower levels that come before its own (COVERAGE)."""
 
     @property
     def comes_of_iterations(self) -> bool:
@@ -95,7 +95,7 @@ class RenderPass:
 
     @property
     def label(self) -> str:
-        """Of its switch."""
+        """Label of its switch."""
         return self.group or self.name
 
 
@@ -108,7 +108,7 @@ def _for_denoisers(name: str, channels: str, kind: PassKind) -> RenderPass:
 
 
 CRYPTOMATTE_PAIRS = 2
-"""Of an identifier and a share, in the four channels of a pass."""
+"""Pairs of an identifier and a share in the four channels of a pass."""
 CRYPTOMATTE_LEVELS = 16
 """The most pairs that Blender knows."""
 
@@ -193,7 +193,7 @@ PASSES = (
 )
 _APART = {Accumulation.INSPECTION, Accumulation.COVERAGE, Accumulation.FOUND_MEAN}
 FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation not in _APART)
-"""Those whose values shaders/film/passes.comp writes, and viewports show."""
+"""Passes whose values shaders/film/passes.comp writes, and viewports show."""
 CAUSTICS = next(entry for entry in PASSES if entry.name == "Caustics")
 DEEP_CUBEMAP = next(entry for entry in PASSES if entry.name == "Deep Cubemap")
 COMBINED = "Combined"

@@ -20,7 +20,7 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class Scene:
-    """What is to be rendered, in a right-handed world in meters."""
+    """Scene to be rendered, in a right-handed world in meters."""
 
     camera: Camera
     meshes: list[Mesh] = field(default_factory=list)
@@ -39,15 +39,15 @@ class Scene:
     world_origin: np.ndarray | None = field(default=None, metadata=declared(3))
     """(3,) meters in Blender's world, from which all places but those of suns and particles are counted; None is 0."""
     shutter: Shutter | None = None
-    """What moves while the picture is taken; None is nothing."""
+    """Motion while the picture is taken; None where nothing moves."""
     neighbors: Shutter | None = None
     """Where things are in the frames before (time 0) and after (1), for the pass Vector; its curve says nothing."""
     asset_names: dict[str, str] = field(default_factory=dict)
-    """Of objects that have a parent, by name, the names of their topmost ones; only where CryptoAsset is rendered."""
+    """Names of topmost parents, by the names of the objects that have one; only where CryptoAsset is rendered."""
     stamps: dict[str, str] = field(default_factory=dict)
-    """What files of pictures tell of where these come from, by Blender's names: Camera, Frame ..."""
+    """Metadata in files of pictures that says where these come from, by Blender's names: Camera, Frame ..."""
     warnings: list[str] = field(default_factory=list)
-    """What is rendered only in part, a line each, naming object or material and node."""
+    """Messages about features that are rendered only in part, a line each, naming object or material and node."""
 
     def warn(self, text: str) -> None:
         """Record and log a warning once."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is said of a setting where it is declared: its range, unit and texts.
+"""Declarations of settings: the range, unit and texts of each.
 
 Validation, Blender's properties, the command line's help and docs/settings.md follow from it.
 """
@@ -33,17 +33,17 @@ class SettingInfo:
     unit: str = ""
     """"m", "s", "pixels", or "fraction" for what is shown as a slider from 0 to 1."""
     zero: str = ""
-    """What 0 stands for: "automatic", "no limit"."""
+    """Meaning of the value 0: "automatic", "no limit"."""
     precision: int = 0
     """Digits after the point that Blender shows; 0 is Blender's own."""
     step: int = 0
-    """Of Blender's buttons; 0 is Blender's own."""
+    """Step of Blender's buttons; 0 is Blender's own."""
     choices: Mapping[enum.Enum, tuple[str, str]] = field(default_factory=dict)
     """Label and description of each member of an enumeration, in the order of the menu."""
     property_name: str = ""
     """Its name in Blender and on the command line, where that is not the field's."""
     property_offset: int = 0
-    """What users see more than the field says: a path of 8 segments has 7 bounces."""
+    """Number added to the field's value for users: -1 where a path of 8 segments has 7 bounces."""
     where: str = ""
     """Where Blender has the setting, when it is no property of scene.rppm."""
 
@@ -52,13 +52,13 @@ class SettingInfo:
         return self.property_name or name
 
     def shown(self, name: str, value: Any) -> str:
-        """What a message says of a field's value."""
+        """Return the text by which messages give the value of the field ``name``, as users see both."""
         seen = value + self.property_offset if self.property_offset else value
         return f"{self.property_of(name)} is {seen}"
 
     @property
     def range_text(self) -> str:
-        """What values there are, for messages and documents: ``0 (automatic) or 1 to 4194304``."""
+        """Text of the accepted values, for messages and documents: ``0 (automatic) or 1 to 4194304``."""
         low, high = (bound if bound is None else bound + self.property_offset for bound in (self.minimum, self.maximum))
         special = f"0 ({self.zero})" if self.zero else ""
         if special and low == 0:

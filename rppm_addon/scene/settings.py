@@ -24,7 +24,7 @@ from .passes import (
 from .setting_info import setting, settings_of
 
 CUBEMAP_COSTS = ("steps", "tests", "list", "entries")
-"""What a ray costs in the deep cubemap: cells looked at; triangles tested; entries in the cell of the hit, 0 where
+"""Costs of a ray in the deep cubemap: cells looked at; triangles tested; entries in the cell of the hit, 0 where
 nothing is hit; entries read."""
 
 MOST_PHOTONS = 1 << 22
@@ -57,7 +57,7 @@ class DensityEstimation(enum.Enum):
 
 
 class AccelerationStructure(enum.Enum):
-    """What rays are traced through: the same hits, at different speed."""
+    """Structure that rays are traced through: the same hits, at different speed."""
 
     AUTOMATIC = "AUTOMATIC"
     """The BVH where the processor stands in for a GPU, otherwise the deep cubemap."""
@@ -98,7 +98,7 @@ class PixelFilter(enum.Enum):
 
 
 class DenoisingInputPasses(enum.Enum):
-    """What guides denoising. Names are Cycles'."""
+    """Passes that guide denoising. Names are Cycles'."""
 
     RGB = "RGB"
     RGB_ALBEDO = "RGB_ALBEDO"
@@ -106,7 +106,7 @@ class DenoisingInputPasses(enum.Enum):
 
 
 class DenoisingPrefilter(enum.Enum):
-    """What is done against noise in that which guides."""
+    """Treatment of noise in the passes that guide denoising."""
 
     NONE = "NONE"
     FAST = "FAST"
@@ -114,7 +114,7 @@ class DenoisingPrefilter(enum.Enum):
 
 
 class DenoisingQuality(enum.Enum):
-    """What denoising may cost."""
+    """Quality of denoising, and so the time that it may take."""
 
     HIGH = "HIGH"
     BALANCED = "BALANCED"
@@ -149,7 +149,7 @@ class RenderSettings:
         soft_minimum=0.001,
         precision=4,
     )
-    """Of the noisiest block (integrator/stages/noise_estimate.py)."""
+    """Noise of the noisiest block at which the render stops (integrator/stages/noise_estimate.py)."""
     adaptive_min_samples: int = setting(
         0,
         "Min Samples",
@@ -534,7 +534,7 @@ class RenderSettings:
 
     @property
     def found_passes(self) -> tuple[RenderPass, ...]:
-        """Those and the ones that denoising needs."""
+        """Passes that are found: those asked for, those that they are divided by, and those that denoising needs."""
         return passes_named(self.film_passes) + self._named_by_users
 
     @property

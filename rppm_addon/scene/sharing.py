@@ -45,7 +45,7 @@ def equal(a: Any, b: Any) -> bool:
 
 @functools.cache
 def _fields_of(kind: type) -> tuple[Callable[[object], tuple] | None, list[str]]:
-    """What gets those fields of a dataclass that Python compares by itself, and the names of the others."""
+    """Return a getter of the fields of a dataclass that Python compares by itself, or None, and the others' names."""
     hints = typing.get_type_hints(kind)
     plain = [name for name in field_names(kind) if _is_plain(hints[name])]
     others = [name for name in field_names(kind) if name not in plain]

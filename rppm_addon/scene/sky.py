@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a sky is made of; rppm_addon.materials.sky.picture computes its radiance."""
+"""Parameters of a sky; rppm_addon.materials.sky.picture computes its radiance."""
 
 import math
 from dataclasses import dataclass

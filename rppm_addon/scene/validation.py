@@ -25,7 +25,7 @@ from .node_graphs import Link, NodeGraph
 from .scene import Scene
 
 _Label = Callable[[int], str]
-"""What the member of a number is called in messages."""
+"""Function that returns the name in messages of the member at an index."""
 _LISTS = ("meshes", "instances", "lights", "materials", "images")
 _LARGEST_INTEGER = (1 << 63) - 1
 _LEAST_STRETCH = 1e-9
@@ -363,7 +363,7 @@ def _check_texels(scene: Scene, texels: Texels) -> None:
 
 
 def _check_members(scene: Scene, shutter: Shutter, label: str) -> None:
-    """What moves is there, and bends as it is."""
+    """Raise SceneError where a member that moves does not exist, or a deformation does not fit its mesh."""
     for kind, moved, count in (
         ("instances", shutter.instances, len(scene.instances)),
         ("lights", shutter.lights, len(scene.lights)),

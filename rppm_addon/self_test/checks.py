@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is tried on a device, and what has to come of it."""
+"""Checks of a device, and the results that they must have."""
 
 import time
 from collections.abc import Callable
@@ -28,7 +28,8 @@ _BLOCK = 4
 """Pixels along a side of what is compared."""
 MEAN_TOLERANCE = 0.03
 BLOCK_TOLERANCE = 0.15
-"""Of eight seeds the mean was off by .4 % (standard deviation .7 %), the worst block by 7 %: noise and radius."""
+"""Relative tolerance of a block. Over eight seeds noise and radius put the mean off by .4 % (standard deviation .7 %),
+the worst block by 7 %."""
 _SAMPLES = 64
 _SPEED_SIZE = (256, 192)
 _SPEED_SAMPLES = 4
@@ -37,7 +38,7 @@ _RAYS = 1 << 16
 
 @dataclass(frozen=True)
 class Finding:
-    """What one check came to."""
+    """Result of one check."""
 
     name: str
     passed: bool
@@ -107,7 +108,7 @@ def reference_scene(samples: int, seed: int = 0) -> Scene:
 
 
 def reference() -> np.ndarray:
-    """What the room looks like, (24, 32, 3) float32."""
+    """Load the radiance of the room's reference picture, (24, 32, 3) float32."""
     with np.load(REFERENCE, allow_pickle=False) as file:
         return file["radiance"]
 
@@ -135,14 +136,14 @@ def _blocks(picture: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Speed:
-    """What the room takes in its speed's size."""
+    """Speed at which the room renders at the size of the speed check, _SPEED_SIZE pixels."""
 
     first_seconds: float
     """Until there is a first sample: programs compiled or loaded, the scene built."""
     sample_seconds: float
-    """Of each further sample."""
+    """Seconds for each further sample."""
     build_seconds: float
-    """Of the acceleration structure."""
+    """Seconds to build the acceleration structure."""
     photons_a_second: float
     stage_seconds: dict[str, float]
 

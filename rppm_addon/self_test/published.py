@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the self-test's scene takes on devices that it was run on, to compare with."""
+"""Published speeds of the self-test's scene on devices that it was run on, to compare with."""
 
 from dataclasses import dataclass
 

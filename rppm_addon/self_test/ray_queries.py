@@ -17,7 +17,7 @@ from ..integrator.deep_cubemap.deep_cubemap import DeepCubemap
 Record("BruteForceParameters", first_ray="uint", end_ray="uint", triangle_count="uint")
 
 _BRUTE_FORCE_TESTS = 1 << 24
-"""Of one dispatch."""
+"""Ray-triangle tests of one dispatch."""
 
 _Operation = Callable[[moderngl.Buffer, moderngl.Buffer, int], None]
 

@@ -30,14 +30,14 @@ _PACKAGES = ("bpy", "moderngl", "glcontext", "numpy", "OpenEXR")
 
 @dataclass
 class SelfTest:
-    """What a self-test found."""
+    """Results of a self-test."""
 
     device: DeviceInformation | None = None
     """None where none could be opened."""
     findings: list[Finding] = field(default_factory=list)
     speed: Speed | None = None
     problems: list[str] = field(default_factory=list)
-    """What the checks were stopped by, or warned of, a line each."""
+    """Errors that stopped the checks, and warnings, a line each."""
     seconds: float = 0.0
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a device is tried with: a room with all stages of Algorithm 1, and scenes whose radiance is known."""
+"""Scenes that test a device: a room with all stages of Algorithm 1, and scenes whose radiance is known."""
 
 from typing import Any
 

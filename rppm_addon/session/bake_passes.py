@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender asks to be baked, as pictures made of the passes of a render."""
+"""Pictures that Blender asks to be baked, made of the passes of a render."""
 
 import enum
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from .results import Frame
 
 
 class BakeFilter(enum.IntFlag):
-    """What light is to be part of it; the numbers are Blender's (BakeSettings.pass_filter)."""
+    """Contributions to a baked picture; the numbers are Blender's (BakeSettings.pass_filter)."""
 
     EMIT = 2
     DIFFUSE = 4
@@ -43,7 +43,7 @@ BAKE_TYPES = {
     **_SINGLE,
     **{name.upper(): name for name in _LOBES},
 }
-"""Those that can be baked, by Blender's names, and how Cycles labels them."""
+"""Labels in Cycles of the types that can be baked, by their names in Blender."""
 ENVIRONMENT = "ENVIRONMENT"
 
 
@@ -54,11 +54,11 @@ class BakePass:
     kind: str
     """One of BAKE_TYPES."""
     contents: BakeFilter = _WHOLE | BakeFilter.COLOR
-    """Of types that are light, what of it."""
+    """Contributions that the picture contains, for types that consist of light."""
 
     @classmethod
     def of_blender(cls, pass_type: str, pass_filter: int) -> "BakePass":
-        """What RenderEngine.bake is called with. Raises SettingsError for what is not offered."""
+        """Return the pass for the arguments of RenderEngine.bake. Raises SettingsError for a type not offered."""
         if pass_type not in BAKE_TYPES:
             offered = ", ".join(BAKE_TYPES.values())
             raise SettingsError(f"RPPM does not bake the type {pass_type}; choose one of {offered}, or use Cycles")

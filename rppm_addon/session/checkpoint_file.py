@@ -52,18 +52,18 @@ class StillRender:
     scene: dict[str, str]
     """Digests by member of the scene (scene_digests)."""
     settings: dict[str, Any]
-    """Those that the picture depends on (plain_settings)."""
+    """Settings that the picture depends on (plain_settings)."""
     exposure: float = field(metadata=declared(minimum=0.0))
     placement: Placement
     source: dict[str, Any] = field(default_factory=dict)
-    """What the command line knows of the file that the scene came from."""
+    """Facts that the command line knows about the file that the scene came from."""
     attributes: dict[str, str] = field(default_factory=dict)
     """Text attributes of the picture's EXR."""
 
 
 @dataclass
 class CheckpointSummary:
-    """What is known of a checkpoint without its arrays."""
+    """Contents of a checkpoint without its arrays."""
 
     render: StillRender
     left_out: int

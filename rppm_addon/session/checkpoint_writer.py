@@ -29,7 +29,7 @@ _MOST_DIFFERENCES = 3
 
 @dataclass
 class CheckpointRequest:
-    """What the command line asks of a still that is kept or rendered in part."""
+    """Request of the command line for a still that is kept or rendered in part."""
 
     checkpoint: Path | None = None
     """Written now and then, and when the render ends or is stopped."""
@@ -41,7 +41,7 @@ class CheckpointRequest:
     left_out: int = 0
     """Iterations before the first of the part."""
     source: dict[str, object] = field(default_factory=dict)
-    """What to know of the file that the scene comes from, as JSON has it."""
+    """Facts about the file that the scene comes from, as JSON has them."""
 
     def check(self) -> None:
         """Raise SettingsError or CheckpointError for what can be known before anything is rendered."""
@@ -165,7 +165,7 @@ def _free_name(path: Path) -> Path:
 
 
 def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
-    """What tells the render of a scene from others."""
+    """Return the description that tells the render of a scene from other renders."""
     from .checkpoint_file import StillRender
 
     return StillRender(

@@ -46,9 +46,9 @@ class Continuation:
     """Told likewise, and the seconds so far, as often as that costs little: where to begin again once the device or the
     process is lost."""
     seconds: float = 0.0
-    """That a render which begins again has taken before: its time limit and snapshots count them."""
+    """Seconds that a render which begins again has taken before. Its time limit and snapshots count them."""
     snapshots_taken: int = 0
-    """That were handed out before."""
+    """Number of snapshots that were handed out before."""
 
 
 class DeviceLossRecovery:
@@ -57,7 +57,7 @@ class DeviceLossRecovery:
     def __init__(self, continuation: Continuation | None) -> None:
         """continuation: where the render begins."""
         self.losses = 0
-        """Of the device, so far."""
+        """Number of times that the device was lost so far."""
         self.continuation = dataclasses.replace(continuation or Continuation(), safeguard=self._safeguard)
         """Where it begins, or begins again."""
         self._start = time.perf_counter()

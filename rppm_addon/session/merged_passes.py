@@ -10,7 +10,7 @@ from ..scene.passes import Accumulation, RenderPass
 
 
 class MergedPasses:
-    """What a film would hold that had seen the iterations of all parts, which are added in their order."""
+    """Passes that a film would hold if it had seen the iterations of all parts. Parts are added in their order."""
 
     def __init__(self, entries: Sequence[RenderPass]) -> None:
         """entries: the passes that the film finds."""

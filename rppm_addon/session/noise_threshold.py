@@ -11,7 +11,8 @@ _TRUST = 1.0
 """In the expected exponent: as much as measurements whose logarithms of iterations spread by so much in square."""
 _LEAST_EXPONENT, _MOST_EXPONENT = 0.2, 0.7
 _RECENT = 8.0
-"""What was measured at less than an eighth of the iterations is no longer looked at."""
+"""Greatest ratio of the iterations of the newest noise measurement to those of an older one that is used.
+A measurement at less than an eighth of the newest one's iterations is ignored."""
 
 
 class NoiseThreshold:

@@ -42,7 +42,7 @@ class RenderObserver:
     """Where the render begins and who keeps it; in the background only (RenderJob.continuation)."""
 
     def on_picture(self, name: PictureName) -> None:
-        """What follows is of this view layer and view: a render may have several, one after the other."""
+        """Take note of the view layer and view that follow. A render may have several, one after the other."""
 
     def on_scene(self, scene: Scene) -> bool:
         """The scene is complete and no renderer has been made for it yet.

@@ -33,13 +33,13 @@ CENTER_TOLERANCE = 0.5
 """Radii of the scene by which the camera of an animation may leave the deep cubemap's center before it is built anew.
 Measured in a room of 100 k triangles, so far off rays cost a tenth more, building a third of an iteration."""
 FIRST_SAFEGUARD_SECONDS = 0.25
-"""What takes less is quickly done again."""
+"""Seconds until the first safeguard of a render. A render that takes less is quickly done again."""
 SAFEGUARD_SECONDS = 5.0
 """Least time from one safeguard of a render to the next, of which a lost device takes the iterations along."""
 SAFEGUARD_MOST_TIME = 0.02
-"""Of all time, that safeguards may take."""
+"""Largest fraction of all time that safeguards may take."""
 MOST_LOSSES = 3
-"""Of the device in one render; then something is wrong that another context does not change."""
+"""Number of times that one render may lose the device. After more, another context would not help either."""
 
 
 def read_combined(film: Film, exposure: float) -> np.ndarray:
@@ -85,12 +85,12 @@ class SlicedRender:
         self._found = 0
         """Iterations that were there before this render."""
         self.iterations = 0
-        """Those in the film that are complete."""
+        """Number of complete iterations in the film."""
         self._limit = TimeLimit(scene.settings.time_limit)
         self._noise = NoiseThreshold(scene.settings)
         self._remaining = RemainingTime()
         self._before: RenderResult | None = None
-        """What there was before an iteration that may be given up: such a one leaves the film unfinished."""
+        """Result before an iteration that may be given up, or None. Giving one up leaves the film unfinished."""
         self._late_warnings: list[str] = []
         self.getting_ready = False
         """Whether iterations are run that do not enter the film."""
@@ -213,7 +213,7 @@ class SlicedRender:
             self._on_progress(self.progress, self.frame)
 
     def _take_snapshots(self, until: float = 0.0) -> None:
-        """Those whose time has come, and those of a time up to which there will be no other picture."""
+        """Hand out the snapshots that are due, and those up to ``until``, before which no other picture comes."""
         while self._pending and max(self.elapsed, until) >= self._pending[0]:
             mark = self._pending.pop(0)
             if self._on_snapshot is not None:
@@ -299,7 +299,7 @@ class Renderer:
 
     @property
     def device(self) -> DeviceInformation:
-        """What is rendered on."""
+        """Device that the renderer uses."""
         return self._context.information
 
     def __enter__(self) -> "Renderer":
@@ -410,7 +410,7 @@ class Renderer:
         return library.started
 
     def inspect(self, scene: Scene) -> tuple[np.ndarray, dict[str, int], dict[str, int]]:
-        """What the camera's rays cost in the scene's deep cubemap, without rendering.
+        """Measure what the camera's rays cost in the scene's deep cubemap, without rendering.
 
         Returns (height, width, 4) float32 of CUBEMAP_COSTS, the counts of the structure, and
         its bytes by buffer. Raises the errors of scene/errors.py.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a render gives: pictures, how far it is, and figures."""
+"""Results of a render: pictures, progress, and figures."""
 
 import dataclasses
 from dataclasses import dataclass, field
@@ -65,9 +65,9 @@ class RenderStatistics:
     first_photon_hits: str = ""
     """The route of the last iteration, a name of FirstPhotonHits."""
     noise: float = 0.0
-    """Of the noisiest block, in the unit of the noise threshold; 0 where there is none."""
+    """Noise of the noisiest block, in the unit of the noise threshold; 0 where there is none."""
     stage_seconds: dict[str, float] = field(default_factory=dict)
-    """Of the device, if the renderer times stages."""
+    """Seconds of the device by stage, if the renderer times stages."""
     memory_bytes: dict[str, int] = field(default_factory=dict)
     flux_watts: dict[str, float] = field(default_factory=dict)
     source_watts: dict[str, float] = field(default_factory=dict)
@@ -83,7 +83,7 @@ class RenderStatistics:
 
 @dataclass
 class RenderResult:
-    """What a render gave."""
+    """Picture and figures of a render."""
 
     frame: Frame
     statistics: RenderStatistics
@@ -92,7 +92,7 @@ class RenderResult:
 
 
 def empty_result(scene: Scene, device: str) -> RenderResult:
-    """What a render gives that was stopped before there was anything to see."""
+    """Return the result of a render that was stopped before there was anything to see."""
     width, height = scene.camera.resolution
     passes = {entry.name: _nothing(entry, height, width) for entry in scene.settings.picture_passes}
     frame = Frame(np.zeros((height, width, 4), np.float32), passes)

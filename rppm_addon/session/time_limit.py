@@ -5,7 +5,7 @@ import collections
 import statistics
 
 TOLERANCE = 0.05
-"""Of the limit, by which a render may end after it."""
+"""Fraction of the time limit by which a render may end after it."""
 _REMEMBERED = 3
 """Iterations whose median is expected of the next: one that was held up by other programs says nothing."""
 

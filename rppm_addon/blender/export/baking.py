@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's bake operator wants pictured: places on a mesh, in place of what a camera sees."""
+"""Export for Blender's bake operator, which renders places on a mesh in place of what a camera sees."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class BakePixels:
 
     @classmethod
     def of_result(cls, result: bpy.types.RenderResult, width: int, height: int) -> "BakePixels":
-        """What RenderEngine.begin_result gives while a texture is baked."""
+        """Read the texels from the result that RenderEngine.begin_result gives while a texture is baked."""
         planes = {}
         for render_pass in result.layers[0].passes:
             if render_pass.name in (_PRIMITIVE, _DIFFERENTIAL):
@@ -63,7 +63,7 @@ class BakePixels:
 
 
 def bake_settings(settings: RenderSettings, bake_pass: BakePass, pixels: BakePixels) -> RenderSettings:
-    """Those of a final render, for a picture to be baked."""
+    """Return the settings of a final render, changed for a picture to be baked."""
     return dataclasses.replace(
         settings,
         passes=bake_pass.passes,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all parts of an export share."""
+"""Context that all parts of an export share."""
 
 from dataclasses import dataclass, field
 
@@ -25,10 +25,10 @@ class ExportContext:
     owners: tuple[bpy.types.bpy_struct | None, ...] = ()
     """View layer, scene and world, in the order in which they are asked for attributes."""
     material_override: bpy.types.Material | None = None
-    """What all surfaces of the view layer have in place of their materials."""
+    """Material that all surfaces of the view layer have in place of their own; None: they have their own."""
     masks: LayerMasks = field(default_factory=LayerMasks)
     culling: Culling = field(default_factory=Culling)
-    """Of objects that the camera does not see; nothing at first."""
+    """Culling of objects that the camera does not see; at first it leaves nothing out."""
     light_links: LightLinks = field(default_factory=LightLinks)
     use_environment: bool = True
     """Whether the view layer has the world's light."""
@@ -56,7 +56,7 @@ class ExportContext:
         return self.owner_reads + self.images.reads_by_frame
 
     def read_from(self, depsgraph: bpy.types.Depsgraph) -> None:
-        """What follows comes from this depsgraph, as it is now."""
+        """Read the state of a depsgraph as it is now; what is exported next comes from it."""
         scene = depsgraph.scene_eval
         self.images.frame = scene.frame_current
         self.images.longest_side = texture_limit(scene, self.viewport)

@@ -13,7 +13,7 @@ class Culling:
     """Which objects a final render leaves out, by their boxes, as Cycles has it (BlenderObjectCulling)."""
 
     def __init__(self, scene: bpy.types.Scene | None = None, camera: Camera | None = None) -> None:
-        """Of an evaluated scene that a camera looks at. Without them nothing is left out."""
+        """Take the settings of an evaluated scene and the camera that looks at it. Without them nothing is left out."""
         self._by_camera = self._by_distance = False
         self._boxes: dict[tuple[int, int], tuple[np.ndarray, bool, bool] | None] = {}
         """By the addresses of an original object and its data, the corners (8, 3) of the box, and by what it is
@@ -35,7 +35,7 @@ class Culling:
 
     @property
     def state(self) -> tuple[Any, ...]:
-        """What tells whether the same is left out of what has not changed."""
+        """Values that are equal where unchanged objects are culled as before; empty where nothing is left out."""
         if not self.is_used:
             return ()
         camera = self._camera

@@ -22,7 +22,7 @@ class CurveSettings:
 
 
 def curve_settings(depsgraph: bpy.types.Depsgraph) -> CurveSettings:
-    """Of the depsgraph's scene and view layer; Cycles' defaults where it is not enabled."""
+    """Return the curve settings of the depsgraph's scene and view layer; Cycles' defaults where it is not enabled."""
     shown = bool(getattr(depsgraph.view_layer_eval, "use_strand", True))
     settings = getattr(depsgraph.scene_eval, "cycles_curves", None)
     shape = getattr(settings, "shape", "RIBBONS")

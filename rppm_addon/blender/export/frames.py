@@ -26,8 +26,8 @@ class FrameExporter:
     def export(
         self, depsgraph: bpy.types.Depsgraph, should_stop: Callable[[], bool], show: Callable[[str], None], eye: Eye
     ) -> Scene:
-        """What a render of the depsgraph needs, as export_scene gives it; only what has changed since the render
-        before is read. Raises the errors of export_scene.
+        """Return the scene for a render of the depsgraph, as export_scene gives it; only what has changed since the
+        previous render is read. Raises the errors of export_scene.
 
         show: takes what is being exported. eye: of the view that is rendered.
         """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a view layer makes of a scene: other materials, another world, and collections that are masks."""
+"""Effects of a view layer on a scene: other materials, another world, and collections that are masks."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ def world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
 
 
 def overrides_of(depsgraph: bpy.types.Depsgraph) -> tuple[object, ...]:
-    """What tells whether a depsgraph's view layer makes the same of its scene as before."""
+    """Return values that are equal where a depsgraph's view layer makes the same of its scene as before."""
     layer = depsgraph.view_layer_eval
     override, world = layer.material_override, getattr(layer, "world_override", None)
     blocks = [None if block is None else block.original.session_uid for block in (override, world)]
@@ -30,7 +30,7 @@ def light_group_of(owner: bpy.types.Object | bpy.types.World) -> str:
 
 
 def _light_groups(layer: bpy.types.ViewLayer, world: bpy.types.World | None) -> Iterator[tuple[object, ...]]:
-    """What belongs to which."""
+    """Yield the names of the light groups, then the session_uid and group of each member; nothing without groups."""
     if len(layer.lightgroups) == 0:
         return
     yield tuple(layer.lightgroups.keys())

@@ -44,11 +44,11 @@ class LightLinks:
 
     @property
     def state(self) -> dict[int, LightLinking]:
-        """What tells whether the linking is as it was."""
+        """Linking by session_uid; it is equal where the linking is as it was."""
         return self._by_uid
 
     def of(self, owner: bpy.types.Object) -> LightLinking | None:
-        """Of what an object brings, itself or what it multiplies; None where it is not linked."""
+        """Return the linking of what an object brings, itself or its instances; None where it is not linked."""
         return self._by_uid.get(owner.original.session_uid) if self._by_uid else None
 
     def tell(self, report: Report) -> None:
@@ -72,9 +72,9 @@ class _Linking:
 
     def __init__(self) -> None:
         self._bits: dict[int, int] = {}
-        """Of the emitters' collections by session_uid."""
+        """Bits of the emitters' collections, by session_uid."""
         self._masks: dict[int, _Masks] = {}
-        """Of the objects in these by session_uid."""
+        """Bits for the objects in the emitters' collections, by session_uid."""
         self._memberships: dict[int, int] = {}
         self.sets: dict[int, int] = {}
         """Numbers of sets by the session_uid of the objects in them."""

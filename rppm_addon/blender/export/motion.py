@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves: Blender's motion blur to a Shutter, and where things are in the frames around, for the pass Vector.
+"""Motion: Blender's motion blur to a Shutter, and where things are in the frames around, for the pass Vector.
 
 Times, steps and what does not move are as in Cycles, whose object properties say what is blurred, but for lights, which
 Cycles leaves in the middle of their way.
@@ -92,7 +92,7 @@ class MotionExporter:
         self._steps_of_shapes: dict[int, int] = {}
         self._with_velocities: set[int] = set()
         self._table: MeshTable | None = None
-        """Of the meshes of the middle."""
+        """Table of the meshes at the middle of the shutter's time."""
 
     def run(self, scene: Scene, objects: ObjectExporter, placed: Placed) -> Placed:
         """Give a scene its shutter, and what moves the places of the middle of the shutter's time.
@@ -242,7 +242,7 @@ class MotionExporter:
         return (1, True) if self._neighbors else _flags_of(source)
 
     def _steps(self, identity: Identity) -> int:
-        """Of what there was in the middle of the shutter's time."""
+        """Return the motion steps of something that there was at the middle of the shutter's time."""
         return self._flags[identity[:2]][0]
 
     def _look_from(self, time: float, camera: bpy.types.Object) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a file may use and no picture of RPPM shows, so that no export leaves it out in silence.
+"""Features that a file may use and no picture of RPPM shows, so that no export leaves them out in silence.
 
 Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (objects/object_pass.py).
 """
@@ -25,7 +25,7 @@ class Omission:
     title: str
     """As Blender's panels have it."""
     consequence: str
-    """What the picture shows instead, and the remedy where there is one."""
+    """Consequence: what the picture shows instead, and the remedy where there is one."""
     reads: tuple[str, ...]
     """Paths of the properties that say whether it is used, from the block on."""
     is_used: Callable[[bpy.types.ID], bool]
@@ -92,7 +92,7 @@ PASSES = {
     "cycles.use_pass_volume_majorant": "Volume Majorant",
     "cycles.pass_render_time": "Render Time",
 }
-"""That RPPM has not, by the switch of a view layer."""
+"""Labels of the passes that RPPM does not have, by the switch of a view layer."""
 
 
 def _passes_without(layer: bpy.types.ViewLayer) -> list[str]:
@@ -108,7 +108,7 @@ def _passes_without(layer: bpy.types.ViewLayer) -> list[str]:
 
 
 class OmissionList:
-    """What of the tables the objects of a depsgraph and its scene use."""
+    """List of the omissions that the objects of a depsgraph and its scene use."""
 
     def __init__(self) -> None:
         self._users: dict[Omission, dict[int, str]] = {}

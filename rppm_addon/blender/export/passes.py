@@ -14,8 +14,8 @@ OF_CYCLES = {
 
 
 def switch_of(layer: bpy.types.ViewLayer, entry: RenderPass) -> tuple[bpy.types.bpy_struct | None, str]:
-    """What holds the pass's switch, and its name: the view layer, or the add-on's properties of it, which are None
-    where the extension is not registered."""
+    """Return the owner of the pass's switch, and the switch's name. The owner is the view layer, or the add-on's
+    properties of it, which are None where the extension is not registered."""
     return (layer, entry.switch) if entry.switch else (getattr(layer, "rppm", None), entry.own_switch)
 
 
@@ -46,6 +46,6 @@ def passes_of_cycles_only(layer: bpy.types.ViewLayer) -> list[str]:
 
 
 def passes_of_layer(layer: bpy.types.ViewLayer) -> tuple[RenderPass, ...]:
-    """Those that are on, in the table's order."""
+    """Return the passes that are on in a view layer, in the order of PASSES."""
     levels = layer.pass_cryptomatte_depth
     return tuple(entry for entry in PASSES if entry.level < max(levels, 1) and getattr(*switch_of(layer, entry), False))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an export has to say to the user, and how it is interrupted."""
+"""Warnings and progress of an export for the user, and how it is interrupted."""
 
 import contextlib
 import logging
@@ -37,7 +37,7 @@ class Report:
         self._should_stop = should_stop
         self._show = show
         self.slices = Slices()
-        """Of an export that lets Blender go on amid it."""
+        """Time slices of an export that lets Blender go on between them."""
 
     @property
     def warnings(self) -> list[str]:

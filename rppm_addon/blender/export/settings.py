@@ -70,7 +70,7 @@ PREVIEW_ITERATIONS, PREVIEW_PHOTONS, PREVIEW_SECONDS = 64, 8192, 1.0
 
 
 def preview_settings(settings: RenderSettings) -> RenderSettings:
-    """Those of Blender's previews of materials, worlds and lights, whose scenes have nobody's settings."""
+    """Return settings for Blender's previews of materials, worlds and lights, whose scenes have nobody's settings."""
     return dataclasses.replace(
         settings, iterations=PREVIEW_ITERATIONS, photons=PREVIEW_PHOTONS, time_limit=PREVIEW_SECONDS
     )

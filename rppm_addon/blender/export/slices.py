@@ -10,7 +10,7 @@ from typing import Any
 _MOST_STRETCH = 2.5
 """By how much a slice may last longer."""
 _FRESH_SECONDS = 0.005
-"""That a slice may be old in which something else begins that takes long."""
+"""Oldest age of a slice, in seconds, at which a single long call still begins in it (step_alone)."""
 
 
 class Unfinished(Exception):
@@ -51,7 +51,7 @@ class Slices:
             raise Unfinished
 
     def step(self, record: dict[Hashable, Any], name: Hashable, make: Callable[[], Any]) -> Any:
-        """What ``make`` gives, made once and kept in a record by its name. Raises Unfinished after it was made."""
+        """Return what ``make`` gives, made once and kept in a record by its name. May raise Unfinished then."""
         if name not in record:
             record[name] = make()
             self.rest()
@@ -105,7 +105,7 @@ class _Job:
         return not self._thread.is_alive()
 
     def result(self) -> Any:
-        """What was computed; raises what computing it raised."""
+        """Return what was computed; raises what computing it raised."""
         if self._error is not None:
             raise self._error
         return self._result

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender writes into files of pictures about where these come from, as far as users want it."""
+"""Metadata that Blender writes into files of pictures about where these come from, as far as users want it."""
 
 import datetime
 

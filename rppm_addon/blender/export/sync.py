@@ -38,7 +38,7 @@ _SHAPELESS = {"CAMERA", "ARMATURE", "LATTICE", "EMPTY", "SPEAKER", "LIGHT_PROBE"
 
 @dataclass
 class Edits:
-    """What a depsgraph says has changed."""
+    """Changes that a depsgraph reports."""
 
     objects: dict[int, bpy.types.Object] = field(default_factory=dict)
     """Evaluated objects by session_uid."""
@@ -103,7 +103,7 @@ class ExportProgress:
 
 @dataclass
 class _Pending:
-    """What has changed since the newest scene, by session_uid: nothing of Blender is held."""
+    """Changes since the newest scene, by session_uid: nothing of Blender is held."""
 
     objects: set[int] = field(default_factory=set)
     shapes: set[int] = field(default_factory=set)
@@ -136,9 +136,9 @@ class SceneSync:
         self._objects = ObjectExporter(self._context)
         self._omissions = OmissionList()
         self._placed: Placed | None = None
-        """What the newest scene has."""
+        """Instances and lights that the newest scene has."""
         self._pass: ObjectPass | None = None
-        """What is under way to the next one."""
+        """Pass over the objects that is under way to the next scene; None where there is none."""
         self._pending = _Pending()
         self._is_unfinished = False
         """Whether an export is under way."""
@@ -149,7 +149,7 @@ class SceneSync:
         self._most_images = 0
         self._frame: float | None = None
         self._overrides: tuple[object, ...] = ()
-        """What the view layer made of the scene, and the texture limit."""
+        """Effects of the view layer on the scene (overrides_of), the texture limit and the curve settings."""
         self._light_links = LightLinks()
         self._culling: tuple[object, ...] = ()
         """Culling.state."""

@@ -19,7 +19,7 @@ _BEFORE_5 = {
 
 
 def _of_multires(render: bpy.types.RenderSettings, name: str) -> tuple[bpy.types.bpy_struct, str]:
-    """What has a setting for multiresolution, by its name in Blender 5, and its name there."""
+    """Return the owner of a setting for multiresolution, and its name there. name: as Blender 5 has it."""
     return (render.bake, name) if hasattr(render.bake, "use_multires") else (render, _BEFORE_5[name])
 
 

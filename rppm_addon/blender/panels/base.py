@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all panels of RPPM in the Properties editor share."""
+"""Base class and layout functions that all panels of RPPM in the Properties editor share."""
 
 import textwrap
 
@@ -64,7 +64,7 @@ def reading(layout: bpy.types.UILayout, name: str, text: str) -> None:
 
 
 def restart_button(layout: bpy.types.UILayout) -> None:
-    """What starts a renderer that has stopped."""
+    """Draw the button that starts a renderer that has stopped."""
     layout.operator("rppm.start_renderer", text="Restart", icon="FILE_REFRESH")
 
 

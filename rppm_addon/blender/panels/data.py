@@ -77,7 +77,7 @@ class RPPM_PT_light_nodes(RppmNodePanel, bpy.types.Panel):
 
 
 class RPPM_PT_panorama(RppmPanel, bpy.types.Panel):
-    """What Blender's Lens panel shows for Cycles only."""
+    """Panorama settings, which Blender's Lens panel shows for Cycles only."""
 
     bl_label = "Panorama"
     bl_context = "data"

@@ -11,7 +11,7 @@ class RppmNodePanel(RppmPanel):
     """Mixed into panels that show one input of an output node."""
 
     owner_name = ""
-    """Of the context's member that has the node tree."""
+    """Name of the context's member that has the node tree."""
     input_name = "Surface"
 
     @classmethod

@@ -21,7 +21,7 @@ SETTINGS = (
     "radius_scale",
     "alpha",
 )
-"""What trades time for quality; limits in meters, seeds and the like belong to a scene."""
+"""Settings in a preset: those that trade time for quality. Limits in meters, seeds and the like belong to a scene."""
 
 
 class RPPM_PT_presets(PresetPanel, bpy.types.Panel):

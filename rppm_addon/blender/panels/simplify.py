@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's Simplify panel shows, which would stand before all others of the render tab."""
+"""Panels in place of Blender's Simplify panel, which would stand before all others of the render tab."""
 
 import bpy
 from bl_ui import properties_render
@@ -75,7 +75,7 @@ class RPPM_PT_object_culling(RppmPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Of objects with a surface."""
+        """Return True for objects with a surface, where Cycles, whose properties are shown, is enabled."""
         seen = context.object is not None and context.object.type in SURFACE_TYPES
         return super().poll(context) and seen and hasattr(context.object, "cycles")
 

@@ -24,7 +24,7 @@ SUGGESTIONS = {
     "radius_maximum": 0.01,
     "cubemap_resolution": 512,
 }
-"""What a switch sets in place of 0, in the units of the settings."""
+"""Values that a switch sets in place of 0, by property of scene.rppm, in the units of the settings."""
 
 
 def _switch(name: str) -> object:

@@ -10,7 +10,7 @@ from .base import RppmPanel
 
 
 def _blenders(name: str) -> type:
-    """What Blender's own panels of passes share, which before Blender 4.3 were panels themselves."""
+    """Return a class that Blender's own panels of passes share, which before Blender 4.3 was a panel itself."""
     return getattr(properties_view_layer, f"{name}Helper", None) or getattr(properties_view_layer, name)
 
 

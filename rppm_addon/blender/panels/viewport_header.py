@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the header of a rendered viewport has of RPPM: pause, warnings, and a renderer that has stopped."""
+"""RPPM's part of the header of a rendered viewport: pause, warnings, and restarting a renderer that has stopped."""
 
 import bpy
 

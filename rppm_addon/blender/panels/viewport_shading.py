@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the shading popover of a rendered viewport has beside Blender's own."""
+"""Panels that RPPM adds to Blender's own in the shading popover of a rendered viewport."""
 
 import bpy
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the last render warned of: a panel of the render tab, and a popover of the viewport's header."""
+"""Warnings of the last render: a panel of the render tab, and a popover of the viewport's header."""
 
 import bpy
 

@@ -36,7 +36,7 @@ class Cluster:
     def __post_init__(self) -> None:
         self._identity = identity()
         self._known: dict[str, str] = {}
-        """What each worker has by address: an identity, or why it cannot tell."""
+        """Identity of the RPPM that each worker runs, by the worker's address, or why the worker cannot tell it."""
 
     def workers(self) -> set[str]:
         """Addresses of the workers that are there now and may be given work."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What can go wrong on a farm."""
+"""Errors of a farm."""
 
 from ...scene.errors import RppmError
 
@@ -14,7 +14,7 @@ class TaskError(RppmError):
     def __init__(self, text: str, worker: str) -> None:
         super().__init__(text, worker)
         self.text = text
-        """What the program said, or how it ended."""
+        """Error message of the program, or how the program ended."""
         self.worker = worker
 
     def __str__(self) -> str:

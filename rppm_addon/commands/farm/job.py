@@ -18,23 +18,23 @@ from .watch import Watch
 
 @dataclass
 class FarmRequest:
-    """What the command line asks of a farm. Paths are absolute: every machine finds the same file there."""
+    """Request of the command line for a farm. Paths are absolute: every machine finds the same file there."""
 
     file: Path
     outputs: list[Path]
     options: list[str]
-    """Of rppm render, for every task alike."""
+    """Options of rppm render, the same in every task that renders."""
     frames: Sequence[int] = ()
-    """Of an animation; else it is a still."""
+    """Frame numbers of an animation; empty for a still."""
     iterations: int = 0
-    """Of a still, all parts together."""
+    """Iterations of a still, all parts together."""
     parts: int = 0
     chunk: int = 1
     """Frames that one start of Blender renders."""
     scheduler: str | None = None
     """Address; None starts workers here."""
     devices: Sequence[str | None] = (None,)
-    """Of the workers here, one each."""
+    """Devices of the workers on this machine, one each."""
     retries: int = 0
     overwrite: bool = False
 
@@ -44,7 +44,7 @@ class FarmReport:
     """How a farm went; counts are of frames or parts."""
 
     kind: str
-    """What is counted: "frames" or "parts"."""
+    """Unit of the counts: "frames" or "parts"."""
     total: int
     found: int
     """There, and whole, before."""

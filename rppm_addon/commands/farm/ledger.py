@@ -81,7 +81,7 @@ class Ledger:
             return None
 
     def _strangers(self, before: Mapping[str, object] | None, job: Mapping[str, object]) -> str:
-        """What is wrong with the pictures that are there."""
+        """Say what is wrong with the pictures that are there."""
         if before is None:
             return f"pictures of these names are there, and {self._file} does not tell what they were made with"
         changed = [words for name, words in _CHANGES.items() if before.get(name) != job[name]]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a farm hands out: one call of the rppm program, and the pictures that it makes."""
+"""Tasks that a farm hands out: each is one call of the rppm program, with the pictures that it makes."""
 
 import contextlib
 import io
@@ -26,12 +26,12 @@ class Task:
     """One call of the program: frames, one after the other, a part of a still, or the merging of parts."""
 
     arguments: tuple[str, ...]
-    """Of rppm, but for frames and outputs."""
+    """Arguments of rppm, without those for frames and outputs."""
     outputs: tuple[Path, ...]
     """The pictures; of frames, with #### for the number."""
     frames: tuple[int, ...] = ()
     words: str = ""
-    """What it is called if it has no frames."""
+    """Name of a task that has no frames."""
 
     def check(self, folder: Path) -> None:
         """Raise SettingsError unless this is a task as those below make them, of a farm whose ledger is ``folder``: it
@@ -87,7 +87,7 @@ class Task:
 
     @property
     def command_line(self) -> str:
-        """What a user would type to do the same."""
+        """Command line that a user would type to do the same."""
         return shlex.join(["rppm", *self.command(self.outputs)])
 
 

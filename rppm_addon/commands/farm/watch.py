@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user sees of a farm at work."""
+"""Progress of a farm at work, as the user sees it."""
 
 import sys
 import threading

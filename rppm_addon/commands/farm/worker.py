@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What happens on a worker: one call of the rppm program in a process of its own, and its pictures put in place."""
+"""Execution of a task on a worker: one call of rppm in a process of its own, and its pictures put in place."""
 
 import contextlib
 import os
@@ -27,11 +27,11 @@ from .tasks import Task
 from .watchdog import TIMEOUT_SECONDS
 
 TOPIC = "rppm-farm"
-"""Of the events that tell how far a task is: task, where, fraction, frames."""
+"""Topic of the events that tell how far a task is: task, where, fraction, frames."""
 _POLL_SECONDS = 0.2
 _LAST_LINES = 20
 _FLAGS = 0
-"""Of processes; elsewhere than on Windows there are none."""
+"""Creation flags of the program's process; there are none except on Windows."""
 if sys.platform == "win32":
     _FLAGS = subprocess.CREATE_NEW_PROCESS_GROUP
 _at_work = 0

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What rays are traced through, whichever structure it is."""
+"""Acceleration structures that rays are traced through: the interface of all of them."""

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all rooms of the integrator share: records, iterations, bands of rows, lists of paths."""
+"""Code that all packages of the integrator share: records, iterations, bands of rows, lists of paths."""

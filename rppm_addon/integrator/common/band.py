@@ -30,7 +30,7 @@ class Band:
 
 
 def rows_of_bands(width: int, height: int) -> int:
-    """Of a band of a width x height region, but for the last, which may have fewer."""
+    """Return the rows of a band of a width x height region. The last band may have fewer."""
     return max(1, min(height, MAXIMUM_BAND_PIXELS // width, MOST_RASTER_PIXELS))
 
 

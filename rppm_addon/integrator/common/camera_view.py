@@ -13,7 +13,7 @@ from ...scene.errors import SceneError
 from .band import MOST_RASTER_PIXELS
 
 PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
-"""Of cameras, by number."""
+"""Names of the projections of cameras, by number."""
 Constants("Projections", PROJECTION={name: number for number, name in enumerate(PROJECTIONS)})
 CAMERA_VIEW = Record(
     "CameraView",

@@ -19,7 +19,8 @@ from .stage_sizes import StageSizes, band_pixels
 BANDS_TOGETHER = 16
 """Parts that are no single bands have a multiple of so many: then blocks of so many rows lie in one part each."""
 _BYTES_TOGETHER = 16
-"""Of a pixel, at most: such parts are as long, whatever the pixels have in them."""
+"""Most bytes of a pixel in a part of several bands. It stands for the real size, so that such parts are equally long
+whatever their pixels hold."""
 
 
 class FilmParts(BufferList):
@@ -39,7 +40,7 @@ class FilmParts(BufferList):
 
     @property
     def rows(self) -> list[int]:
-        """Of each part."""
+        """Number of rows of each part."""
         return [end - first for first, end in zip(self._first_rows, self._end_rows, strict=True)]
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every stage of an iteration gets to know of it."""
+"""Description of an iteration that all of its stages receive."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Iteration:
     direct_world_flux: float = 0.0
     """W of a photon of the world that contributes, where photons share the world's direct light with rays; else 0."""
     shadow_rays: int = 1
-    """Of each vertex of a camera path."""
+    """Shadow rays of each vertex of a camera path."""
     weighs_noise: bool = False
     """Whether the noise that photons make is told from the rest, for later iterations to choose their photons by."""
 

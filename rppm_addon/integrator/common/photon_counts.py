@@ -17,18 +17,19 @@ _CAMERA_VERTEX, _SHADOW_RAY, _PHOTON_PAIR = 1.0, 0.5, 0.1
 """Costs in units of a photon's ray with its hit: a vertex of a camera path, a shadow ray there, and a photon that a
 pixel takes. They are fixed numbers, not measured ones, so that renders are the same on every run."""
 _MOST_HALVINGS, _FEWEST = 4.0, 512
-"""Of the first iteration's photons, and the least: so many go on looking for light that none has found."""
+"""Most halvings of the first iteration's number of photons, and the fewest photons that halvings leave: so many go on
+looking for light that no photon has found."""
 _STEPS = 2.0
 """For each halving. What a frame differs in from the one before seldom changes so coarse a number, so that the photons
 and their noise stay where they are; of the best time no more than half a percent is lost."""
 _DARK = 0.01
-"""Of errors relative to squared luminance: what is added to it."""
+"""Constant that is added to the squared luminance to which squared errors are relative."""
 _AROUND, _LEFT_OUT = 2, 0.001
 """Pixels to each side whose mean luminance errors are relative to; the part of the pixels, the worst, left out."""
 EVENNESS = 2.25
-"""What the variance of the mean of many iterations is less than that of independent ones, as their points are even:
-along edges the mean of 64 has 1.5 times less error than two halves of them tell (stages/noise_estimate.py). Photons
-have no such gain, as the guide sends them elsewhere and radii shrink."""
+"""Factor by which the variance of the mean of many iterations is lower than if they were independent, as their sample
+points are even: along edges the mean of 64 has 1.5 times less error than two halves of them tell
+(stages/noise_estimate.py). Photons have no such gain, as the guide sends them elsewhere and radii shrink."""
 _NO_NOISE = 1e-9
 """Relative variance that counts as none."""
 _SETTLED = LEARNING_ITERATIONS.bit_length()
@@ -71,14 +72,14 @@ class PhotonCounts:
 
 @dataclass(frozen=True)
 class NoiseSamples:
-    """What an iteration found at some pixels, (rows, columns) float64 luminances each."""
+    """Samples of an iteration at some pixels, (rows, columns) float64 luminances each."""
 
     rest: np.ndarray
     """Light that comes without photons, and what gathering rays found."""
     all: np.ndarray
-    """That and what photons bring."""
+    """``rest`` and the light that photons bring."""
     signed: np.ndarray
-    """What photons bring, each path with a random sign."""
+    """Light that photons bring, each photon path with a random sign."""
     signed_final_gather: np.ndarray
     """The part of that which gathering rays found."""
 
@@ -102,17 +103,17 @@ def _relative_mean(squares: np.ndarray, luminance: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class NoiseVariances:
-    """What the iterations that are learned from have told of the noise of photons and of all else."""
+    """Variances of the noise of photons and of all else, from the iterations that are learned from."""
 
     photons: float = 0.0
-    """Those that the photons' part was measured with, all iterations together."""
+    """Number of photons that the photons' part was measured with, all iterations together."""
     photon_sum: float = 0.0
     """The sum of their variance v_p by their number."""
     rest_sum: float = 0.0
     """The sum of v_c over pairs of iterations."""
     pairs: int = 0
     rest_photon_variance: float = 0.0
-    """What photons made of v_c in the last iteration, at the ends of gathering rays."""
+    """Part of v_c that photons made in the last iteration, at the ends of gathering rays."""
 
     def with_first(self, samples: NoiseSamples) -> "NoiseVariances":
         """After the first iteration, whose radii are too wide to tell the photons' noise."""

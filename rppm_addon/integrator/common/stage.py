@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the stages of an iteration have in common."""
+"""Base class of the stages of an iteration."""
 
 from typing import ClassVar
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the lengths of the stages' buffers follow from."""
+"""Sizes and features of a scene that determine the lengths of the stages' buffers."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ class StageSizes:
     width: int
     height: int
     photons: int = 0
-    """Of an iteration, the most."""
+    """Largest number of photons of an iteration."""
     segments: int = 0
     """Segments of a photon path that nothing but its bounces limits, the first leaving the light."""
     passes: tuple[RenderPass, ...] = ()
@@ -51,7 +51,7 @@ class StageSizes:
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
-        """Those of a scene."""
+        """Return the sizes of a scene."""
         width, height = scene.camera.resolution
         passes = scene.settings.found_passes
         if demands.is_filtered:
@@ -77,7 +77,7 @@ class StageSizes:
 
     @property
     def defines(self) -> dict[str, int]:
-        """What programs are told of the scene: kinds of lobes to evaluate, and portals."""
+        """Macros that tell programs about the scene: kinds of lobes to evaluate, and portals."""
         known = {
             "HAIR_LOBES": self.has_hair,
             "ASHIKHMIN_LOBES": self.has_ashikhmin,
@@ -97,12 +97,12 @@ class StageSizes:
 
     @property
     def light_groups(self) -> tuple[str, ...]:
-        """Those that have passes."""
+        """Light groups that have passes."""
         return tuple(entry.light_group for entry in self.passes if entry.light_group)
 
     @property
     def bands(self) -> list[Band]:
-        """Of the film, from below; the first has the most rows."""
+        """Bands of the film, from below; the first has the most rows."""
         return bands_of(self.width, self.height)
 
 
@@ -113,52 +113,53 @@ def _links_lights(scene: Scene) -> bool:
 
 
 def film_pixels(sizes: StageSizes) -> int:
-    """Of the region that is rendered."""
+    """Return the number of pixels of the region that is rendered."""
     return sizes.width * sizes.height
 
 
 def band_pixels(sizes: StageSizes) -> int:
-    """Of a band of rows, the most."""
+    """Return the number of pixels of the largest band of rows."""
     return sizes.width * rows_of_bands(sizes.width, sizes.height)
 
 
 def aov_channels(sizes: StageSizes) -> int:
-    """Of all passes of AOV Output nodes together."""
+    """Return the number of channels of all passes of AOV Output nodes together."""
     return sum(len(entry.channels) for entry in sizes.passes if entry.is_aov)
 
 
 def split_pixels(sizes: StageSizes) -> int:
-    """Of a band, the most, where passes tell apart what makes its light; else 0."""
+    """Return the number of pixels of the largest band where passes show scattered light or caustics apart; else 0."""
     return band_pixels(sizes) if sizes.has_scattered_light or sizes.has_caustics else 0
 
 
 def grouped_pixels(sizes: StageSizes) -> int:
-    """Of a band, the most, where light groups have passes; else 0."""
+    """Return the number of pixels of the largest band where light groups have passes; else 0."""
     return band_pixels(sizes) if sizes.light_groups else 0
 
 
 def grouped_photons(sizes: StageSizes) -> int:
-    """Of an iteration, the most, where they are to tell the groups of their lights; else 0."""
+    """Return the largest number of photons of an iteration where they store their lights' groups; else 0."""
     return sizes.photons if sizes.light_groups else 0
 
 
 def linked_photons(sizes: StageSizes) -> int:
-    """Of an iteration, the most, where they are to tell what their lights shine on; else 0."""
+    """Return the largest number of photons of an iteration where they store what their lights shine on; else 0."""
     return sizes.photons if sizes.links_lights else 0
 
 
 def subsurface_walks(sizes: StageSizes) -> int:
-    """Of a band's camera paths or of an iteration's photons, the most, where light may go below surfaces; else 0."""
+    """Return the largest number of subsurface walks, one for each camera path of a band or each photon of an iteration,
+    where light may go below surfaces; else 0."""
     return max(band_pixels(sizes), sizes.photons) if sizes.has_subsurface else 0
 
 
 def exiting_pixels(sizes: StageSizes) -> int:
-    """Of a band, the most, where light may go below surfaces; else 0."""
+    """Return the number of pixels of the largest band where light may go below surfaces; else 0."""
     return band_pixels(sizes) if sizes.has_subsurface else 0
 
 
 def photon_paths(sizes: StageSizes) -> int:
-    """Of an iteration, the most."""
+    """Return the largest number of photon paths of an iteration."""
     return sizes.photons
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a viewport asks of iterations that a final render does not."""
+"""Demands that a viewport makes on iterations and a final render does not."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ GUIDES = (DENOISING_ALBEDO, DENOISING_NORMAL, DENOISING_DEPTH)
 SEEN_LIGHT = ("Emission", "Environment")
 """Passes of light that has no noise to be filtered."""
 FILTERED_PASSES = (*GUIDES, *SEEN_LIGHT)
-"""That a film keeps for the noise filter."""
+"""Passes that a film keeps for the noise filter, by name."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,8 @@ class ViewportDemands:
     """For pictures of few pixels and samples; a final render has none."""
 
     shadow_rays: int = 1
-    """Of each vertex of a camera path. Their lights are stratified, so that several find every kind of light."""
+    """Shadow rays of each vertex of a camera path. Their lights are stratified, so that several find every kind of
+    light."""
     is_filtered: bool = False
     """Whether the film keeps what the noise filter takes."""
     has_subsurface: bool = False

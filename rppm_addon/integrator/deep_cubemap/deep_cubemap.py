@@ -92,7 +92,7 @@ BINNED_FRAGMENT = Record("BinnedFragment", cell="uint", triangle="uint", depths=
 
 
 class CellKind(enum.IntEnum):
-    """What a cell that is not empty holds."""
+    """Kinds of cells that are not empty, by what they hold."""
 
     LIST = 0
     """A few triangles."""
@@ -143,7 +143,7 @@ _CLUSTERED = {1 << 24: 8, 1 << 20: 4}
 _LISTED_BY_CLUSTERS = {1: 1.0, 2: 0.7, 4: 0.5, 8: 0.3}
 """Lengths of lists over those without clusters, by that."""
 _SURELY = 0.8
-"""Of the length that is expected of a list, what it has where it is long."""
+"""Fraction of its expected length that a long list has at least."""
 _MOST_STARTS = 1 << 26
 """Places of entries and bins that cells can name (shaders/deep_cubemap/cells.glsl)."""
 _READ_AS_TEXELS = "CubemapCells", "CellEntries", "Triangles"
@@ -293,7 +293,7 @@ class DeepCubemap(AccelerationStructure):
 
     @property
     def _cluster_defines(self) -> dict[str, object]:
-        """Of programs that know what entries stand for."""
+        """Defines of programs that know what entries of cells stand for."""
         return {"TRIANGLE_CLUSTERS": 1} if self._most_clustered > 1 else {}
 
     @property
@@ -511,7 +511,7 @@ class DeepCubemap(AccelerationStructure):
         drawn.draw(self._framebuffer, 6 * jobs, {block: buffers[block] for block in drawn.blocks}, parameters)
 
     def _picture_side(self) -> int:
-        """Of the picture that jobs are drawn into, pixels."""
+        """Return the side of the picture that jobs are drawn into, pixels."""
         limits = self._context.limits
         return min(_PICTURE_SIDE, int(limits["GL_MAX_TEXTURE_SIZE"]), *map(int, limits["GL_MAX_VIEWPORT_DIMS"]))
 

@@ -29,11 +29,12 @@ StorageBlock("RadiusFactors", "float radius_factors[];")
 Record("NarrowParameters", count="uint", most_factor="float", expected="float")
 
 _LEAST_FRACTION = 0.25
-"""Of the first iteration's photons: disks of fewer hold too few to tell how dense they lie."""
+"""Least fraction of the first iteration's photons that is assumed: disks of fewer hold too few photons to tell how
+dense they lie."""
 
 
 class CausticRadii(Stage):
-    """What Eq. 3's radius of each pixel of the film is multiplied by, from the second iteration on."""
+    """Factors that multiply Eq. 3's radius of each pixel of the film, from the second iteration on."""
 
     memory_group = "passes"
     remedy = "lower the resolution"

@@ -51,8 +51,8 @@ _FEWEST_BUCKETS = 1 << 10
 _ROUNDING_STEPS = 8.0
 """Float spacings at the largest coordinate: more than the rounding of a sphere's ends and of their division."""
 _MOST_ROUNDS = 2000
-"""Of a thread on software devices: llvmpipe ends the loops of a thread after 65535 rounds in all. The threads of a
-vector, up to 16, may have to wait for each other in both loops."""
+"""Most rounds of a thread on software devices: llvmpipe ends the loops of a thread after 65535 rounds in all. The
+threads of a vector, up to 16, may have to wait for each other in both loops."""
 _NO_LIMIT = 0xFFFFFFFF
 _FEWER_PIXELS = "lower the resolution"
 
@@ -114,7 +114,8 @@ class PhotonGrid(BufferSet):
         self._place_photons.run(photons.count, {**photons.blocks, **self.blocks, **cells}, parameters)
 
     def _side(self, radius: float) -> float:
-        """Of cells for spheres up to a radius, whose reach shaders/photon_grid/gather.comp makes a little longer."""
+        """Return the side of cells for spheres up to a radius, meters. shaders/photon_grid/gather.comp makes the
+        reach of these a little longer."""
         return 2.0 * (1.001 * radius + 2.0 * self._rounding)
 
     def splat(self, photons: StoredPhotons, importons: SplatTargets, sums: SplatSums) -> None:

@@ -170,7 +170,7 @@ def fitted_wide_radius(radius: float, expected: float, found: float) -> float:
 
 
 def widest_radius(footprints: np.ndarray, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
-    """What the wide radius of the first iteration never exceeds, meters.
+    """Return the upper limit of the wide radius of the first iteration, meters.
 
     A twentieth of the scene's diagonal, and ten times the Eq. 3 radius in the middle of the view (``footprints``, as
     for radius_limits): beyond, splats would cover the picture.

@@ -33,12 +33,12 @@ StorageBlock("GroupSums", "uint group_words[];")
 
 _PHOTON_QUANTA = 1 << 24
 _SUM_WORDS, _COUNT_WORDS = 12, 6
-"""Of a pixel (shaders/splat_sums/sums.glsl)."""
+"""Words of a pixel in SplatSums, and in PhotonCounts (shaders/splat_sums/sums.glsl)."""
 _SCATTERED_SUMS, _CAUSTICS_SUMS = 6, 2
 
 
 class LightSum(enum.IntFlag):
-    """What sums are kept of, beside all light."""
+    """Kinds of sums that are kept beside those of all light."""
 
     SCATTERED = 1
     """By what the first surface made of it."""
@@ -48,7 +48,7 @@ class LightSum(enum.IntFlag):
 
     @classmethod
     def of(cls, sizes: StageSizes) -> "LightSum":
-        """Those that the passes ask for."""
+        """Return the kinds of sums that the passes ask for."""
         wanted = {
             cls.SCATTERED: sizes.has_scattered_light,
             cls.CAUSTICS: sizes.has_caustics,
@@ -101,7 +101,7 @@ class SplatSums(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self.kept = LightSum.of(sizes)
-        """Of the light sums."""
+        """Kinds of light sums that are kept."""
         self._groups = len(sizes.light_groups)
         self.count_in(1.0, 0, 0)
 
@@ -121,7 +121,7 @@ class SplatSums(BufferSet):
 
     @contextlib.contextmanager
     def left_alone(self) -> Iterator[None]:
-        """What is splatted meanwhile adds nothing."""
+        """Leave the sums as they are within the context: photons that are splatted meanwhile add nothing."""
         parameters = self.parameters
         self.parameters = parameters | {"quanta": 0.0, "counting": 0}
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What density estimation works with: the stored photons of an iteration, and importons that take of them."""
+"""Input of density estimation: the stored photons of an iteration, and the importons that take of them."""
 
 import dataclasses
 import enum
@@ -93,7 +93,7 @@ class StoredPhotons:
     """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
     radii: SplatRadii
     largest_coordinate: float
-    """Of any position, meters, by its absolute value."""
+    """Largest coordinate of any position, by its absolute value, meters."""
     iteration_block: moderngl.Buffer
     """The uniform block Iteration."""
 
@@ -141,12 +141,12 @@ class SplatTargets:
     raster: CameraRaster | None
     """Where first hits lie on the camera's raster."""
     center: np.ndarray
-    """Of the splat cubemap for all others, (3,) meters, which changes no sum."""
+    """Center of the splat cubemap, which serves importons without a raster, (3,) meters; it changes no sum."""
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
-        """That the narrow radii of these importons do not exceed, meters."""
+        """Return the upper limit of the narrow radii of these importons, meters."""
         return photons.radii.final_gather if self.final_gather else photons.radii.caustic
 
     def least_radius(self, photons: StoredPhotons) -> float:
-        """That the least radii of these importons do not exceed, meters."""
+        """Return the upper limit of the least radii of these importons, meters."""
         return photons.radii.final_gather if self.final_gather else photons.radii.narrow

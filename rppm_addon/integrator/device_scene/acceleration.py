@@ -26,12 +26,12 @@ class Acceleration:
         self._context, self._library = context, library
         self._structure: AccelerationStructure | None = None
         self.center = np.full(3, np.nan)
-        """Of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
+        """Center of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
         self._wanted_center = self.center
 
     @property
     def structure(self) -> AccelerationStructure:
-        """What rays are traced through, once it was built."""
+        """Acceleration structure that rays are traced through, once it was built."""
         return require(self._structure)
 
     def kind(self, scene: Scene) -> Kind:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What differs between two scenes that share the members that did not change."""
+"""Differences between two scenes that share the members that did not change."""
 
 import dataclasses
 from dataclasses import dataclass

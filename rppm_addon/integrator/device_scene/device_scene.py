@@ -33,7 +33,7 @@ _NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 class DeviceScene:
-    """What of a scene lies on the device: geometry, materials, lights and the acceleration structure."""
+    """Parts of a scene that lie on the device: geometry, materials, lights and the acceleration structure."""
 
     def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
         self._timers = timers
@@ -51,12 +51,12 @@ class DeviceScene:
         self._source_scene: Scene | None = None
         """The scene, its shutter included."""
         self._uploaded_scene: Scene | None = None
-        """What stands on the device; None: nothing to compare a change with."""
+        """Snapshot of the scene on the device; None if there is no scene to compare a change with."""
         self._warnings: dict[str, list[str]] = {"device": context.information.warnings}
-        """What was said when a part was built, which holds for scenes after it as well."""
+        """Warnings by part, collected when the part was built. They hold for later scenes as well."""
         self._moving: MovingScene | None = None
         self._swept = _NOWHERE
-        """What things move through while the shutter is open (swept_bounds)."""
+        """Bounds of the space that things move through while the shutter is open (swept_bounds)."""
         self._checked_bodies: dict[int, tuple[Mesh, bool]] = {}
 
     @property
@@ -165,10 +165,10 @@ class DeviceScene:
                 self.materials.build(scene)
 
     def _build_parts(self, changes: Changes, photons: int, keep_learned: bool = False) -> None:
-        """What rests on the scene's members that have changed, but for materials, displacement and the acceleration
-        structure.
+        """Build all that rests on the scene's members that have changed, except for materials, displacement and the
+        acceleration structure.
 
-        photons: of the iteration. keep_learned: go on with what was learned of the lights.
+        photons: number of photons of the iteration. keep_learned: go on with what was learned of the lights.
         """
         scene = require(self.scene)
         if changes.geometry:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every stage of an iteration works with."""
+"""Context that every stage of an iteration works with."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -29,9 +29,9 @@ class StageContext:
     materials: MaterialTables
     lights: Lights
     acceleration: AccelerationStructure
-    """What rays are traced through."""
+    """Acceleration structure that rays are traced through."""
     center: np.ndarray
-    """Of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
+    """Center of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
     resolve: Resolve
     timers: StageTimers
     iteration_block: IterationBlock

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What photons are aimed at: the objects that make caustics."""
+"""Caustic casters: the objects that make caustics, at which photons are aimed."""
 
 from typing import Any, cast
 

@@ -35,9 +35,10 @@ _POINTS = 8
 """Places of a triangle, on either side in turn, where an emission that varies is asked for."""
 _CHUNK = 1 << 16
 _LEAST_SHARE = 0.05
-"""Of a material's mean radiance: what triangles count for at least, since points may miss what shines."""
+"""Fraction of a material's mean radiance that each of its triangles counts for at least, where emission varies: the
+places where it is asked for may miss what shines."""
 _SEEN_REFLECTED = RayVisibility.GLOSSY | RayVisibility.SHADOW
-"""What objects must be that smooth surfaces look for: the nearest one hides those behind it."""
+"""Ray visibility of emissive objects that smooth surfaces look for: the nearest one hides those behind it."""
 _STEPS = 1 << 24
 """Shares are multiples of 2^-24: random numbers have no more steps."""
 
@@ -257,7 +258,7 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
 def _candidates(
     scene: Scene, geometry: Geometry, materials: MaterialTables, links: LightLinkTable
 ) -> Iterator[np.ndarray]:
-    """What _may_emit tells, of all instances together."""
+    """Return an iterator over the arrays that _may_emit tells, each joined over all instances."""
     dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
     by_path = {m for m, material in enumerate(scene.materials) if m not in dark and asks_for_path(material.graph)}
     found = [
@@ -285,9 +286,9 @@ def _emitting(scene: Scene, instance: Instance, materials: MaterialTables) -> tu
 def _may_emit(
     scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int], links: LightLinkTable
 ) -> tuple[np.ndarray, ...]:
-    """Of one instance: records without radiance, corners (n, 3, 3) in meters, material, whether it varies, whether
-    smooth surfaces may look for it, its link, and how many sides shine: what its emission depends on must be known
-    without the path that comes there."""
+    """Return columns for the triangles of one instance that may emit: records without radiance, corners (n, 3, 3) in
+    meters, material, whether its emission varies, whether smooth surfaces may look for it, its LightLink, and how many
+    sides shine. Smooth surfaces look for no emission that depends on the path that comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots, which = _emitting(scene, instance, materials)

@@ -74,8 +74,8 @@ def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.nd
 
 
 def probabilities(estimate: np.ndarray) -> np.ndarray:
-    """What to choose cells by, (n,) summing to 1: the root of the probability to contribute gives the sum of
-    photons the least variance, and a share is defensive."""
+    """Return the probabilities of choosing cells, (n,) summing to 1: the root of the probability to contribute gives
+    the sum of photons the least variance, and a share is defensive."""
     weight = np.sqrt(estimate)
     return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
 

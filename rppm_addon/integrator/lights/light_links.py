@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lights shine on and what stops their light: the few combinations that a scene has, by number."""
+"""Light linking: the few combinations in a scene of what lights shine on and what stops their light, by number."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the nodes of lights give by place or direction, as maps for shaders/lights/light_maps.glsl."""
+"""Maps of what the nodes of lights give by place or direction, for shaders/lights/light_maps.glsl."""
 
 import math
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ _MOST_TEXELS = 1 << 24
 
 @dataclass
 class LightNodes:
-    """What the nodes of a light do to it. At a distance d in meters they multiply its strength by ``scale`` times the
+    """Factor by which the nodes of a light multiply its strength. At a distance d in meters it is ``scale`` times the
     map times d^falloff d^2 / (smoothing + d^2), which the Light Falloff node's outputs are."""
 
     scale: np.ndarray
@@ -41,7 +41,7 @@ class LightNodes:
     smoothing: float = 0.0
     shape: MapShape | None = None
     extent: float = 0.0
-    """Of a cone: the tangent of half of what the map shows."""
+    """Tangent of half the angle that the map of a cone shows; 0 for other maps."""
     place: tuple[float, float, float, float] = field(default=(0.0, 0.0, 0.0, 0.0))
     """Among the maps: left, bottom, width, height from 0 to 1."""
 

@@ -27,10 +27,10 @@ class LightShape(enum.IntEnum):
 
 
 class EmitterTrait(enum.IntFlag):
-    """Of an emissive triangle."""
+    """Traits of an emissive triangle."""
 
     UNEVEN = 1
-    """What it emits varies with place or direction."""
+    """The emission varies with place or direction."""
     REFLECTED = 2
     """Smooth surfaces look for it: it is seen by reflection as by shadow rays, and hides what is behind it."""
 

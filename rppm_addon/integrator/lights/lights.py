@@ -35,7 +35,7 @@ from .spheres import holds_surfaces
 log = logging.getLogger(__name__)
 
 _LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
-"""Of a light's record, what follows from what photons were good for."""
+"""Members of a LIGHT record that follow from which photons contributed."""
 
 LIGHT_PARAMETERS = {
     "scene_center": "vec3",
@@ -139,7 +139,7 @@ class Lights(BufferSet):
 
     @property
     def portals(self) -> Portals:
-        """Those of the scene, once it was built."""
+        """Portals of the scene, once it was built."""
         return require(self._portals)
 
     @property
@@ -353,7 +353,7 @@ class Lights(BufferSet):
         self.guide.tally(photons, slots, self._photons)
 
     def learn(self, photons: int) -> float:
-        """Of what has been tallied, learn where to send the photons of the next iterations, so many in each.
+        """Learn from the tallies where to send the photons of the next iterations, so many in each.
 
         Lights get photons by the power that contributes (guide.py), and a part by how many contribute. Returns how many
         times more photons should contribute from now on.

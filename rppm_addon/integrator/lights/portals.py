@@ -24,28 +24,29 @@ PORTAL_PARAMETERS = {
     "portal_width": "uint",
     "portal_height": "uint",
 }
-"""Of LIGHT_PARAMETERS: portals are lights behind the last of the table. ``portal_light`` is the number of the light
-whose photons leave through them; ``portal_table`` is where their directions begin in the EnvironmentDistribution, with
-so many columns and rows. ``portal_fraction`` is that of the world's shadow rays which pass portals, where these face
-the point, ``portal_table_fraction`` that of those in the directions of the table; the others go by the world's map.
+"""Members of LIGHT_PARAMETERS for portals, which are lights behind the last of the table. ``portal_light`` is the
+number of the light whose photons leave through portals. ``portal_table`` is where the directions of the portals' light
+begin in the EnvironmentDistribution, with ``portal_width`` columns and ``portal_height`` rows. Where portals face a
+point, ``portal_fraction`` of the environment shadow rays are sampled by the portals' solid angle, and
+``portal_table_fraction`` by the directions of the table; the others go by the world's map.
 """
 
 FIRST_PHOTON_FRACTION = 0.5
-"""Of the world's photons, those that leave through portals as long as nothing was learned."""
+"""Fraction of the world's photons that leave through portals as long as nothing has been learned."""
 _LEAST_PHOTONS, _MOST_PHOTONS = 0.1, 0.9
 _SHADOW_RAYS = 0.9
-"""Of those to the world, what portals have; the others find other openings."""
+"""Fraction of environment shadow rays that are sampled through portals; the others find other openings."""
 _BRIGHT = 8.0
 """Times the mean: what is brighter in a world is found by the directions of its light."""
 _BRIGHT_FRACTION = 0.1
-"""Of a world's light: where more comes from bright spots, half of the shadow rays look for these."""
+"""Fraction of a world's light: where bright spots give more, half of the environment shadow rays look for them."""
 _EVEN_ROWS = 32
 _SUBCELLS = 2
 """Places along each side of a cell at which portals are asked what they let pass."""
 
 
 class Portals:
-    """Those among a scene's lights, in the light of its world; none where none of it passes them."""
+    """Portals among a scene's lights, and the light of its world that passes through them; empty where none passes."""
 
     def __init__(
         self, lights: list[Light], environment: Environment, scene_radius: float, before: "Portals | None" = None
@@ -96,8 +97,9 @@ def is_portal(light: Light) -> bool:
 
 
 def shadow_ray_fractions(brightness: np.ndarray | None) -> tuple[float, float]:
-    """Of the world's shadow rays those that go anywhere in portals, and those that go where its light through portals
-    comes from, by its map (rows, columns), or None of an even one: where it has bright spots."""
+    """Return two fractions of the environment shadow rays: those that go anywhere in portals, and those that follow
+    the directions of the world's light through portals, which are taken where the world has bright spots. brightness:
+    the world's map (rows, columns), or None for an even world."""
     if brightness is None:
         return _SHADOW_RAYS, 0.0
     light = brightness * _sines(len(brightness))[:, None]
@@ -134,8 +136,9 @@ def _shown(brightness: np.ndarray) -> np.ndarray:
 
 
 def photon_fraction(contributing_power: np.ndarray) -> float:
-    """Of the world's photons, those that leave through portals, by what of its power contributes, W: (2,), of all that
-    comes to the scene, and of what passes portals. What other openings let in keeps photons."""
+    """Return the fraction of the world's photons that leave through portals. contributing_power: (2,) W of the world's
+    power that contributes, of all that comes to the scene and of what passes portals. What other openings let in keeps
+    photons."""
     everywhere, through = contributing_power
     return float(np.clip(through / max(everywhere, 1e-300), _LEAST_PHOTONS, _MOST_PHOTONS))
 

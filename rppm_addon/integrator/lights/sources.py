@@ -8,13 +8,13 @@ ENVIRONMENT = "World"
 
 
 def source_name(light: str) -> str:
-    """Of a light object, never that of the surfaces or the world."""
+    """Return the source name of a light object, which is never that of the surfaces or the world."""
     return f'Light "{light}"'
 
 
 _REGARDLESS_OF_POWER = 0.125
-"""Of the photons: what sources get however little power they have. Beside a world of a thousand meters around, or a
-sun, lamps in a room would have no photon, though all that the others send misses the room."""
+"""Fraction of the photons that is shared among sources however little power they have. Beside a world of a thousand
+meters around, or a sun, lamps in a room would have no photon, though all that the others send misses the room."""
 
 
 def photon_shares(powers: np.ndarray, contributions: np.ndarray) -> np.ndarray:

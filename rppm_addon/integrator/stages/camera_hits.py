@@ -13,7 +13,7 @@ from .importons import Importons
 
 
 class CameraHits(Stage):
-    """What GBuffer and PrimaryRays have in common."""
+    """Common base of the stages that find the camera's first hits, such as GBuffer and PrimaryRays."""
 
     memory_group = "camera paths"
     camera = StorageBuffer("camera", CAMERA_VIEW, 1, block="Camera")

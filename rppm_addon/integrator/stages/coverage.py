@@ -23,7 +23,7 @@ class Coverage:
         self._library = library
 
     def probe(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
-        """Of the importons that the active paths have just left."""
+        """Probe the disks of the importons that the active paths have just left."""
         if not context.gathers or segment == 0:
             return
         with context.timers.stage("coverage"):

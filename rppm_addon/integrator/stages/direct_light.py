@@ -22,8 +22,8 @@ from ..device_scene.stage_context import StageContext
 from .importons import Importons
 
 LIGHT_SPLIT = Record("LightSplit", glossy="vec3", light="uint", transmission="vec3", unused="float")
-"""Of what a shadow ray adds, by channel: the parts that such lobes scatter; the rest is diffuse. ``light`` is the
-number of the light that it goes to, if that is no triangle."""
+"""Fractions of the light of a shadow ray that glossy and transmission lobes scatter, by channel; the rest is diffuse.
+``light`` is the number of the light that the ray goes to, if that is no triangle."""
 StorageBlock("LightSplits", "LightSplit light_splits[];")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What happens in a band of an iteration, and who is told: passes, light groups and the noise estimate."""
+"""Events in a band of an iteration, and their listeners: passes, light groups and the noise estimate."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -42,9 +42,9 @@ StorageBlock("Film", "vec4 film[];")
 StorageBlock("PhotonLight", "vec4 photon_light[];")
 """Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
 StorageBlock("GroupValues", "float group_values[];")
-"""Of each pixel of a band, for each light group, three channels."""
+"""Light of each pixel of a band, three channels for each light group."""
 StorageBlock("PassValues", "float pass_values[];")
-"""Those of a pass lie together, pass by pass (shaders/film/passes.glsl)."""
+"""Values of a band's passes, one pass after the other (shaders/film/passes.glsl)."""
 Constants(
     "Passes",
     ACCUMULATION=Accumulation,
@@ -69,7 +69,8 @@ def _channels(sizes: StageSizes) -> int:
 
 
 def _pass_values(sizes: StageSizes) -> list[int]:
-    """Of each band: in one buffer those of a large picture would be more than some drivers allow."""
+    """Return the number of pass values of each band. One buffer for a large picture would be more than some drivers
+    allow."""
     return [band.pixel_count * _channels(sizes) for band in sizes.bands]
 
 
@@ -126,7 +127,7 @@ class Film(Listener):
         self.width, self.height, self._bands = sizes.width, sizes.height, sizes.bands
         self._first_rows = [band.first_row for band in sizes.bands]
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
-        """Of those wanted, the ones that passes.comp writes."""
+        """Requested passes that passes.comp writes."""
         self._passes = pass_bits(sizes)
         self.found_passes = sizes.passes
         """All that read_passes gives, and those that do not come of iterations."""

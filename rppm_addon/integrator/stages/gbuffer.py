@@ -20,7 +20,7 @@ from .importons import Importons
 
 
 def _filter_density(kind: PixelFilter, x: np.ndarray) -> np.ndarray:
-    """Of a filter that reaches from -0.5 to 0.5."""
+    """Return the density at x of a pixel filter that reaches from -0.5 to 0.5."""
     if kind is PixelFilter.BLACKMAN_HARRIS:
         return (
             0.35875

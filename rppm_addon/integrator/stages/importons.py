@@ -42,7 +42,7 @@ class Importons(Stage):
     importons = StorageBuffer("importons", IMPORTON, band_pixels, block="Importons")
     radiances = StorageBuffer("band radiance", "vec4", band_pixels, block="Radiances")
     aovs = StorageBuffer("band AOVs", "float", _band_aovs, block="AovValues")
-    """Of each path the channels of the AOV passes, as the nodes of materials add to them."""
+    """Channels of the AOV passes for each path, as the nodes of materials add to them."""
     active = PathList("active camera paths", band_pixels, to_keep=True)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -72,7 +72,7 @@ class Importons(Stage):
             return True
 
     def find_hits(self, context: StageContext) -> None:
-        """What the rays of the active paths hit."""
+        """Find what the rays of the active paths hit."""
         context.acceleration.trace(self.rays.buffer, self.hits.buffer, self.active)
 
     def resolve(self, context: StageContext, iteration: Iteration, segment: int) -> None:
@@ -98,7 +98,7 @@ class Importons(Stage):
             )
 
     def splat_targets(self, context: StageContext, segment: int, raster: CameraRaster | None) -> SplatTargets:
-        """Those of the segment, to take photons; ``raster``: where its hits lie on the camera's."""
+        """Return the segment's importons, to take photons; ``raster``: where its hits lie on the camera's raster."""
         return SplatTargets(
             self.importons.buffer,
             self.active,

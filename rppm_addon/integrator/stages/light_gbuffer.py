@@ -39,7 +39,7 @@ LIGHT_VIEW = Record(
     forward="vec3",
     least_depth="float",
 )
-"""What a light sees through a window of half the extent ``tangent`` at depth 1. Depths begin at the tip,
+"""View of a light through a window whose half extent at depth 1 is ``tangent``. Depths begin at the tip,
 ``tip_distance`` before the center; ``margin`` is how far texels are widened; nearer than ``least_depth`` float rounding
 tells nothing of directions. Lengths in meters."""
 
@@ -62,7 +62,8 @@ StorageBlock("TexelTriangles", "uint texel_triangles[];")
 _COUNTS = Record("LightGBufferCounts", jobs="uint", triangles="uint", unused0="uint", unused1="uint")
 
 MOST_LIGHTS = 16
-"""Those with the most photons have views; photons of the others are traced."""
+"""Maximum number of lights that have views. The lights with the most photons have them; photons of the others are
+traced."""
 
 _COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
 """Texels along a view's side, and of all views where these allow it."""
@@ -70,13 +71,13 @@ _MOST_TESTS = 1 << 24
 """Views times triangles: beyond this only the first light has views."""
 _PICTURE_SIDE = 4096
 _WIDEST_MARGIN = 1.0 / 128.0
-"""Of the scene's radius: lights with more extent have no view that is of use."""
+"""Largest margin of a useful view, as a fraction of the scene's radius. Lights with more extent have no useful view."""
 _WIDEST_CONE = math.radians(60.0)
 """Half a spot's angle up to which it has one view."""
 _ROUNDING = 2.0**-19
-"""Of the farthest distance: a few times the rounding of positions."""
+"""Margin for rounding, as a fraction of the farthest distance: a few times the rounding of positions."""
 _SUN_DISTANCE = 2000.0
-"""Of suns' tips, in radii of the scene."""
+"""Distance of a sun view's tip from the scene's center, in radii of the scene."""
 
 
 def _look(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -27,7 +27,8 @@ StorageBlock("SeenLight", "vec4 seen_light[];")
 
 _CHANNELS = 3
 _KINDS_OF_LIGHT = 2
-"""What pixels have got, and what gathering rays have found for them (shaders/light_groups/grouped.glsl)."""
+"""Number of kinds of light of a group: light that a pixel has received, and light that its gathering ray has found
+(shaders/light_groups/grouped.glsl)."""
 
 
 def _grouped_values(sizes: StageSizes) -> int:

@@ -114,7 +114,7 @@ class LightPasses(Listener):
                 )
 
     def _parts(self, final_gather: FinalGather) -> dict[GatherPart, moderngl.Buffer]:
-        """What is shared of what gathering rays found."""
+        """Return the buffers of light found by gathering rays that is to be shared, by part."""
         parts: dict[GatherPart, moderngl.Buffer] = {}
         if LightSum.SCATTERED in self._kept:
             parts |= {GatherPart.ALL: final_gather.radiances.buffer, GatherPart.DIRECT: self._found_direct.buffer}

@@ -52,9 +52,9 @@ class MotionVectors(BufferSet):
         self.wanted = _is_wanted(sizes)
         self._program = library.compute("motion_vectors/add.comp") if self.wanted else None
         self._uploaded: tuple[Shutter, list[Placement]] | None = None
-        """Of what scene the triangles are."""
+        """Shutter and placements of the scene whose triangles are uploaded, or None."""
         self._cameras: tuple[Camera, Camera] | None = None
-        """Of the frame before and the next one."""
+        """Cameras of the previous frame and of the next one, or None."""
 
     def add(
         self,

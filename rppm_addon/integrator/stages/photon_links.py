@@ -13,15 +13,15 @@ from ..common.stage_sizes import StageSizes, linked_photons
 from ..device_scene.stage_context import StageContext
 
 StorageBlock("PhotonLinks", "uint photon_links[];")
-"""Of the photons that left the lights, the numbers of their LightLinks."""
+"""LightLinks numbers of the photons that left the lights."""
 
 
 Record("PhotonLinkParameters", count="uint")
 
 
 class PhotonLinks(BufferSet):
-    """What the light of each photon shines on and what stops it, by number; where no light is linked neither programs
-    nor a buffer."""
+    """Light links of each photon, by number: what its light shines on and what stops that light. Where no light is
+    linked, there are neither programs nor a buffer."""
 
     remedy = "lower the photons per iteration"
     _links = StorageBuffer("light links of photons", "uint", linked_photons, block="PhotonLinks")

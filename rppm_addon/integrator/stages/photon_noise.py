@@ -29,7 +29,7 @@ _MOST_SAMPLES = 1 << 16
 
 
 def sample_step(width: int, height: int) -> int:
-    """Of a film's rows and columns every so many have samples."""
+    """Return the step between the rows, and between the columns, of a film that have samples."""
     return math.ceil(math.sqrt(width * height / _MOST_SAMPLES))
 
 

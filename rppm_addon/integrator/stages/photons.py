@@ -197,7 +197,7 @@ class Photons(Stage):
         return listed
 
     def stored(self, context: StageContext, listed: PhotonList, radii: Radii) -> StoredPhotons:
-        """Those that are listed, with what their estimate depends on."""
+        """Return the listed photons, with the data that their estimate depends on."""
         bounds = context.geometry.bounds_low, context.geometry.bounds_high
         return StoredPhotons(
             self.photons.buffer,

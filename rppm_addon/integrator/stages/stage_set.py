@@ -38,8 +38,8 @@ from .texel_hits import TexelHits
 
 
 def _camera_hits(sizes: StageSizes, is_software: bool) -> type[CameraHits]:
-    """What finds the camera's first hits. Software drivers take longer to draw all triangles than to trace a ray for
-    each pixel (docs/benchmarks/moves.md)."""
+    """Return the class of the stage that finds the camera's first hits. Software drivers take longer to draw all
+    triangles than to trace a ray for each pixel (docs/benchmarks/moves.md)."""
     if sizes.has_texels:
         return TexelHits
     drawn = FirstCameraHits.RASTERIZED, *(() if is_software else (FirstCameraHits.AUTOMATIC,))
@@ -107,7 +107,7 @@ class StageSet(BufferSet):
         }
 
     def events_of(self, context: StageContext, iteration: Iteration, band: Band, radii: Radii) -> BandEvents:
-        """What listeners are told of a band."""
+        """Return the events of a band, of which listeners are told."""
         sums = self.density_estimator.sums
         return BandEvents(context, iteration, band, radii, self.importons, self.direct_light, self.final_gather, sums)
 

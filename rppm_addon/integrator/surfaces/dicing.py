@@ -13,11 +13,11 @@ from ...scene.motion import Deformation
 from .unit_vectors import unit_vectors
 
 MOST_TRIANGLES = 1 << 20
-"""Of all instances of a mesh."""
+"""Most triangles that all instances of a divided mesh may have together."""
 _OFFSCREEN = 4.0
 """How much longer edges may be that the camera does not see."""
 _PERCENTILE = 90.0
-"""Of the edges, those that are to be as short as is asked for."""
+"""Percentage of the edges that are to be as short as is asked for."""
 _MOST_LOOKED_AT = 64
 """Instances of a mesh that tell how large it is seen."""
 

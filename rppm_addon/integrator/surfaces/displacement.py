@@ -21,7 +21,7 @@ from .displaced_normals import displaced_normals
 from .displaced_vertices import DisplacedVertices
 
 _Slots = tuple[tuple[int, bool] | None, ...]
-"""Of each slot the index of a material that displaces, and whether it is bumped as well; None of others."""
+"""Displacing material of each slot: its index, and whether it is bumped as well; None where the slot has none."""
 
 
 @dataclass
@@ -49,7 +49,7 @@ class _Shape:
 
     @property
     def mesh(self) -> Mesh:
-        """What is displaced."""
+        """Mesh that is displaced: the diced one, or the source where it stays whole."""
         return self.source if self.diced is None else self.diced.mesh
 
     def normals(self, before: np.ndarray, after: np.ndarray, normals: np.ndarray) -> np.ndarray:
@@ -72,9 +72,9 @@ class Displacement:
         self._shapes: dict[tuple[int, _Slots], _Shape] = {}
         """By the id of the mesh, and materials."""
         self._slots: dict[int, tuple[int, bool]] = {}
-        """Of the materials of the last scene that displace."""
+        """Displacing materials of the last scene, as _Slots has them, by index."""
         self.warnings: list[str] = []
-        """Of the last scene, what is divided less than is asked for; this follows from camera and meshes."""
+        """Warnings of what is divided less than is asked for in the last scene; this follows from camera and meshes."""
 
     def displaced(self, scene: Scene, materials: MaterialTables, renewed: bool) -> Scene:
         """The scene with its meshes displaced, and their shapes at other times; itself where nothing is displaced.
@@ -170,7 +170,7 @@ _Users = dict[int, dict[_Slots, list[int]]]
 
 
 def _users(scene: Scene, slots_of: dict[int, tuple[int, bool]]) -> _Users:
-    """Those of meshes of which any is displaced."""
+    """Return the instances of those meshes of which any instance is displaced, by mesh and slots."""
     if not slots_of:
         return {}
     found: _Users = {}
@@ -214,7 +214,8 @@ def _moved(shape: _Shape, offsets: np.ndarray) -> Mesh:
 def _with_displaced(
     shutter: Shutter | None, places: dict[int, list[tuple[int, _Shape]]], users: _Users
 ) -> Shutter | None:
-    """What bends, with the same offsets at all times, as in Cycles; itself where none of it is displaced."""
+    """Return a shutter whose bending meshes are displaced, with the same offsets at all times, as in Cycles; the
+    shutter itself where none of them is displaced."""
     if shutter is None or not any(deformation.mesh in places for deformation in shutter.meshes):
         return shutter
     meshes = []

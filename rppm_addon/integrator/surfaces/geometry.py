@@ -23,7 +23,7 @@ from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 log = logging.getLogger(__name__)
 
 _OBJECTS_NAMED = 3
-"""Those of the most triangles, where the device cannot hold all."""
+"""Number of objects that an error names where the device cannot hold all: those of the most triangles."""
 _NO_UV = 0xFFFFFFFF
 """In place of where a mesh's UV begin."""
 Constants("MeshArrays", NO_UV=_NO_UV)
@@ -162,7 +162,7 @@ class Geometry(BufferSet):
             for name in ("Instances", "SlotMaterials", *_MESH_ARRAYS)
         }
         self._arrays: dict[str, list[np.ndarray]] = {}
-        """What lies one behind the other in the buffers of that name."""
+        """Arrays that lie one behind the other in a buffer, by the buffer's name."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
         self.triangle_count = 0

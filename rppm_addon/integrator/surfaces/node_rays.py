@@ -35,16 +35,16 @@ Record(
     samples="uint",
 )
 NODE_RAY = Record("NodeRay", direction="vec3", query="uint", found="vec3", reach="float")
-"""What a node asks: the unit vector around which rays go and how far they reach, meters; and what they found so far:
-how many met nothing, or the weighted sum of normals. No query: 0. Of a Raycast, which finds a normal, another
-follows. First its ``direction`` is where the ray begins; then it holds two barycentric coordinates of the hit and the
-lower 16 bits of the triangle, ``reach`` the others, and ``found`` the distance, meters, whether anything was met, and
-whether the object itself."""
+"""A node's query: the unit vector around which rays go and how far they reach, meters; and what they found so far:
+how many met nothing, or the weighted sum of normals. ``query`` is 0 where nothing is asked. A Raycast's record finds a
+normal, and a second record follows it. First the ``direction`` of the second is where the ray begins; then it holds two
+barycentric coordinates of the hit and the lower 16 bits of the triangle, ``reach`` the others, and ``found`` the
+distance, meters, whether anything was met, and whether the object itself."""
 StorageBlock("NodeRays", "NodeRay node_rays[];")
 
 
 class NodeRayQuery(enum.IntEnum):
-    """What is looked for."""
+    """Kinds of queries, by what their rays look for."""
 
     OCCLUSION = 1
     LOCAL_OCCLUSION = 2
@@ -86,8 +86,9 @@ class NodeRays(BufferSet):
         return self._rays.buffer
 
     def program(self, traversal: AccelerationStructure, casts: bool) -> ComputeProgram:
-        """What traces; where there are cores to spare it is compiled between asking for it and its first run. casts:
-        also rays that begin anywhere, of which the program without knows nothing."""
+        """Return the program that traces the rays of nodes; where there are cores to spare it is compiled between
+        asking for it and its first run. casts: also rays that begin anywhere, of which the program without knows
+        nothing."""
         defines = {**traversal.traversal_defines, **({"RAYCASTS": 1} if casts else {})}
         return self._library.compute("node_rays/trace.comp", defines)
 

@@ -29,7 +29,7 @@ from .surface_attributes import SurfaceAttributes
 StorageBlock("HitOrder", "uint hit_order[];")
 """Numbers of hits by the program that evaluates their material (shaders/resolve/ranges.glsl)."""
 StorageBlock("AovValues", "float aov_values[];")
-"""Of the paths of a band, what AOV Output nodes have written."""
+"""Values that AOV Output nodes have written, for each path of a band."""
 
 
 Record(
@@ -114,7 +114,7 @@ class Resolve(BufferSet):
         self._programs: list[ComputeProgram] = []
         self._ray_counts: list[NodeRayCounts] = []
         self._ray_stride = 0
-        """What nodes ask of rays at a hit, at most."""
+        """NODE_RAY records of each hit: the most that any program asks for."""
         self._casts_rays = False
         """Whether nodes ask for rays that begin anywhere."""
         self._traversal: AccelerationStructure | None = None

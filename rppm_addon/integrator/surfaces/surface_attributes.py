@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What shading nodes ask about objects: matrices, object and particle info, mesh attributes."""
+"""Object data that shading nodes read: matrices, object and particle info, mesh attributes."""
 
 import operator
 
@@ -82,7 +82,7 @@ class SurfaceAttributes(BufferSet):
         self.has_terminators = False
         """Whether any instance has an offset of its shadow terminator."""
         self._sources: dict[int, tuple] = {}
-        """Of what lies at a place of the values, that from which it was made."""
+        """Arrays and settings from which the values were made, by the place of these in the buffer."""
 
     def build(self, scene: Scene, geometry: Geometry, names: list[str]) -> None:
         """Upload what the nodes of the scene's materials need. ``names``: the attributes that they read.
@@ -183,7 +183,7 @@ def object_record(matrix: np.ndarray) -> np.ndarray:
 
 
 def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:
-    """What has the same value on all triangles."""
+    """Return an attribute that has the same value on all triangles of a mesh."""
     values = np.tile(np.array(value, np.float32), (mesh.triangle_count, 1))
     return MeshAttribute(AttributeDomain.TRIANGLE, values)
 

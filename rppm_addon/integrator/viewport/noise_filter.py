@@ -71,7 +71,7 @@ class NoiseFilter(BufferSet):
     remedy = "make the viewport smaller"
     _guides = StorageBuffer("guides of the noise filter", "vec4", film_pixels)
     _passes = StorageBuffer("passes of the noise filter", "float", _pass_values, texel_bytes=16)
-    """Of a film, one pass after the other in the order of FILTERED_PASSES."""
+    """Passes of a film that the filter reads, one after the other in the order of FILTERED_PASSES."""
     picture = StorageBuffer("filtered picture", "vec4", film_pixels)
     """Radiance W/(m^2 sr) and alpha, once it was filtered."""
 

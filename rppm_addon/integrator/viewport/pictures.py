@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a viewport shows of a film: filtered while samples are few, enlarged while pixels are, and with the last view's
-picture beside it while that tells more."""
+"""Pictures that a viewport shows of a film: filtered while samples are few, enlarged while pixels are few, and combined
+with the last view's picture while that tells more."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -26,15 +26,16 @@ from .noise_filter import NoiseFilter, strength
 from .reprojection import HISTORY_ENDS, MOST_HISTORY, NewPicture, Reprojection, SeenPicture, can_move
 
 MOST_SHADOW_RAYS = 4
-"""Of each vertex in coarse pictures: as many as pixels are missing, but for more than these."""
+"""Maximum number of shadow rays of a vertex in coarse pictures. Up to this, a vertex has about one for each pixel of
+the full resolution that its pixel stands for."""
 
 
 _SEEN_PICTURES = (SeenPicture,) * 3
-"""That a Reprojection has."""
+"""Classes of the pictures that a Reprojection holds: the last, the next and the moved one."""
 
 
 def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -> ViewportDemands:
-    """What a picture of a scene at a share of the side length asks of iterations.
+    """Return what a picture of a scene demands of iterations, at a share ``level`` of the full side length.
 
     materials: one for each of the scene's, those that others stand in for as yet. Programs are to be ready for them:
     else they would be compiled when these come, while nothing new is shown.
@@ -53,7 +54,7 @@ def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -
 
 
 def expected_bytes(sizes: StageSizes) -> dict[str, int]:
-    """What the pictures of a viewport take on the device, by buffer."""
+    """Return the bytes that the pictures of a viewport take on the device, by buffer."""
     return sum_by_name(kind.expected_bytes(sizes) for kind in (NoiseFilter, *_SEEN_PICTURES))
 
 

@@ -54,7 +54,7 @@ class NewPicture:
     width: int
     height: int
     samples: float
-    """That it counts."""
+    """Number of samples that the picture counts as."""
 
 
 class SeenPicture(BufferSet):
@@ -78,9 +78,9 @@ class SeenPicture(BufferSet):
         depth = self.own(gl.depth_texture(size), _SURFACES)
         self.framebuffer = self.own(gl.framebuffer([self.looks, self.surfaces, self.numbers], depth))
         self.scene: Scene | None = None
-        """That the picture is of."""
+        """Scene that the picture shows; None if there is no picture."""
         self._seen: Scene | None = None
-        """That the surfaces are of."""
+        """Scene that the surfaces belong to; None if there are none."""
         self.world_offset = np.zeros(3)
         """(3,) meters from where the camera's place is counted (Scene.world_offset)."""
 

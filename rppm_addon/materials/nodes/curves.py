@@ -6,7 +6,7 @@ from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 TABLE = ("table",)
 ENTRIES = 257
-"""Of a table of a ramp or a curve: Cycles cuts the range into 256 parts."""
+"""Number of entries in the table of a ramp or a curve: Cycles cuts the range into 256 parts."""
 Constants("CurveTables", ENTRIES=ENTRIES)
 
 KINDS = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands in for materials (materials/stand_in.py), which is no node of Blender's."""
+"""Node kind of the stand-ins for materials (materials/stand_in.py), which is no node of Blender's."""
 
 from ..node_kinds import COLOR, FLOAT, SHADER, NodeKind
 

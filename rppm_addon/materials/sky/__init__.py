@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the Sky Texture node shows: the models of Preetham, Hosek and Wilkie, and scattering."""
+"""Skies of the Sky Texture node: the models of Preetham, Hosek and Wilkie, and scattering."""

@@ -23,7 +23,7 @@ AEROSOL_ASYMMETRY = 0.76
 
 SUN_TEMPERATURE = 5778.0
 SUN_SOLID_ANGLE = 6.790164e-5
-"""Of the true sun seen from the Earth, which makes its irradiance; sr."""
+"""Solid angle of the true sun seen from the Earth, which determines its irradiance; sr."""
 SUN_IRRADIANCE = 1e-9 * SUN_SOLID_ANGLE * black_body(WAVELENGTHS, SUN_TEMPERATURE)
 """(21,) W/m^2 per nm above the atmosphere."""
 

@@ -22,11 +22,12 @@ _NUMBERS = re.compile(r"[<>|][biuf][1248]")
 """Types of arrays: numbers without any that would be taken for addresses."""
 _MOST_ARRAYS = 1 << 20
 _MOST_AXES = 8
-"""What no scene comes near: arrays without bytes would otherwise be as many as somebody likes."""
+"""Limits on the arrays of a message and on the axes of an array, which no scene comes near.
+Without them a message could hold any number of arrays without bytes."""
 
 
 def pack(arrays: Sequence[np.ndarray]) -> tuple[dict, SharedBlock | None]:
-    """What the message says of the arrays, and the block that they lie in, if any.
+    """Return the message's description of the arrays, and the block that they lie in, if any.
 
     The block is the caller's to close once the receiver has unpacked it, or has died. Raises OSError when there is
     not enough shared memory.

@@ -13,7 +13,7 @@ from ..denoised_pictures import finished_result, noisy_frame
 from ..results import RenderResult
 
 MOST_TIME = 0.2
-"""Of all time, that denoising may take: without a GPU it takes the processor from the iterations."""
+"""Largest fraction of all time that denoising may take. Without a GPU it takes the processor from the iterations."""
 POLL_SECONDS = 0.02
 """Between two looks at a picture that is being denoised, when there is nothing else to do."""
 

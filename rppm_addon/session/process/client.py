@@ -27,7 +27,7 @@ logger = logging.getLogger(__name__)
 LARGEST_LOG = 1 << 24
 """Bytes; then the log begins anew."""
 _UNASKED = {SessionKind.PREVIEW, SessionKind.PREPARATION}
-"""What comes by itself."""
+"""Kinds of sessions that are opened without a request of the user."""
 _AnySession = TypeVar("_AnySession", bound=Session)
 MOST_RESTARTS = 2
 """Times that a process which died is started anew without being asked to."""
@@ -95,7 +95,7 @@ class RendererProcess:
         self._folders = list(folders)
         self._timeouts = timeouts or Timeouts()
         self.denoisers = list(denoisers)
-        """What the next process that is started is told of."""
+        """Denoiser libraries that the next process is told of when it starts."""
         self.environment: dict[str, str] = {}
         """Variables that it has beside Blender's own."""
         self.sessions: dict[int, Session] = {}

@@ -79,7 +79,10 @@ class Session:
         self._on_its_way = 0
 
     def take_snapshot(self) -> tuple[int, Scene, int, bool] | None:
-        """What is to be sent now: number, scene, generation, navigating. One is on its way at a time."""
+        """Return the number, scene, generation and navigating of the snapshot to send now, or None.
+
+        Only one snapshot is on its way at a time.
+        """
         if not self._due or self._on_its_way or self._snapshot is None:
             return None
         self._due = False
@@ -184,7 +187,7 @@ class RenderSession(Session):
     def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.events: queue.SimpleQueue[tuple[str, dict]] = queue.SimpleQueue()
-        """What the process tells, in the protocol's words; "started" when there is a process."""
+        """Messages of the process, in the protocol's words; "started" when there is a process."""
         self.introduced = False
         """Whether there has been a process that knows the session; scenes shown to another one will reach it."""
         self._snapshots: tuple[float, ...] = ()
@@ -192,9 +195,9 @@ class RenderSession(Session):
         self._stopping = False
         self._generation = 0
         self._kept: KeptRender | None = None
-        """What another process is to go on with."""
+        """Render that another process is to go on with."""
         self._given: SharedBlock | None = None
-        """What that process reads it from."""
+        """Shared memory that the other process reads the kept render from."""
 
     def begin(self, scene: Scene) -> None:
         """Render a scene to its end; no other one may be under way. What it shares with the scene before stays."""

@@ -37,7 +37,7 @@ class ConnectionOwner(SessionOwner, Protocol):
 
 
 class Connection:
-    """What is known of a process while it runs; guarded by the owner's ``changed``."""
+    """Connection to a process while it runs, and its state; guarded by the owner's ``changed``."""
 
     def __init__(self, owner: ConnectionOwner, child: ChildProcess) -> None:
         """Start to talk with a process that has just been started."""

@@ -27,7 +27,7 @@ class SharedFrame:
     """A complete picture of a viewport."""
 
     generation: int
-    """Of the scene that it shows."""
+    """Generation of the scene that the frame shows."""
     sequence: int
     """Greater than that of every frame of the session before it."""
     width: int

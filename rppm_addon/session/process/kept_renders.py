@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a renderer's process hands over of a render, for another process to go on with if this one ends."""
+"""State of a render that a renderer's process hands over, for another process to go on with if this one ends."""
 
 import logging
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class KeptRender:
     document: dict[str, Any]
     arrays: list[np.ndarray]
     seconds: float
-    """That the render has taken so far."""
+    """Seconds that the render has taken so far."""
 
     def message(self, reason: str) -> tuple[dict[str, Any], SharedBlock | None]:
         """The content of "go_on", and the block that is to be kept until it is read. Raises OSError without memory.

@@ -55,7 +55,7 @@ class KnownPrograms:
 
 
 def programs_of(material: Material) -> tuple[MaterialProgram, ...]:
-    """Those that a material is rendered with."""
+    """Return the programs that a material is rendered with."""
     try:
         text = compile_graph(
             material.graph, abbe_number=material.abbe_number, on_round_shapes=material.on_round_shapes

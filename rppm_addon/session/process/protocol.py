@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender and its renderer process say to each other: framed JSON over two pipes.
+"""Messages between Blender and its renderer process: framed JSON over two pipes.
 
 A message is a JSON object behind its length in four bytes; its "kind" says what it is. Only the standard library is
 imported here: the child reads its first message before it can find anything else.

@@ -62,13 +62,13 @@ class Rendering:
         self._render: SlicedRender | None = None
         self._slices: Iterator[None] | None = None
         self._finish: BackgroundFinish | None = None
-        """Of a render that has all its iterations."""
+        """Result of a render whose iterations are over, on its way to be handed out; None while iterations are run."""
         self._generation = 0
         self._stopped = 0
         """The newest generation that is to end."""
         self._picture_wanted = False
         self._blocks: collections.deque[SharedBlock] = collections.deque()
-        """What lies in shared memory until Blender has copied it."""
+        """Blocks of shared memory that Blender has not copied yet, the oldest first."""
 
     def expect_snapshots(self, seconds: Sequence[float]) -> None:
         """Send the picture at these ascending times; to be said before the scene is shown."""

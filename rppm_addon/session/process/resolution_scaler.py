@@ -8,7 +8,7 @@ from ...scene.camera import Camera
 from ...scene.scene import Scene
 
 COARSEST = 0.25
-"""Of the resolution: coarser pictures show too little to steer by."""
+"""Smallest share of the full side length. Coarser pictures show too little to steer by."""
 _STEADY = 0.2
 """A first resolution that would change by less stays as it is, so that pictures do not flicker."""
 _STEP = 2.0

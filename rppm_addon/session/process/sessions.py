@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What both sides know of a session in the renderer's process."""
+"""Kinds and status of sessions in the renderer's process, which both sides know."""
 
 import enum
 from dataclasses import dataclass, field
 
 
 class SessionKind(enum.Enum):
-    """What a session is for; the value is its weight when several share the device."""
+    """Purpose of a session; the value is its weight when several share the device."""
 
     PREPARATION = 0.25
     VIEWPORT = 1
@@ -19,7 +19,7 @@ class SessionStatus:
     """How a session gets on."""
 
     generation: int = 0
-    """Of the scene that this is about."""
+    """Generation of the scene that the status is about."""
     program: str = ""
     """The name of the last that is being compiled."""
     programs_started: int = 0

@@ -26,7 +26,7 @@ class StandIns:
         self._made: dict[int, tuple[Material, Material]] = {}
         """Materials of the scene with their stand-ins, likewise."""
         self._waited_for: set[MaterialProgram] = set()
-        """Those that are not ready."""
+        """Programs that are not ready."""
         self._used = False
         """Whether the program of the stand-ins is there."""
         self._exchanged_at = 0.0

@@ -36,7 +36,8 @@ _IN_COLUMNS = {"instances"}
 _PART_COLUMNS = 4096
 _PART_MEMBERS = 256
 _PART_BYTES = 1 << 25
-"""What one message says of new members. Turning a document into text holds the interpreter, and Blender with it."""
+"""Limits of one message about new members: members in columns, other members, and bytes of arrays.
+Turning a document into text holds the interpreter, and Blender with it."""
 
 
 class Part:
@@ -67,7 +68,10 @@ class Part:
 
 @dataclasses.dataclass
 class _Sent:
-    """What the receiver has. Objects are known by their ids, which stay their own as long as they are kept here."""
+    """Members and arrays that the receiver has.
+
+    Objects are known by their ids, which stay their own as long as they are kept here.
+    """
 
     members: dict[int, tuple[int, object, Sequence[int]]] = dataclasses.field(default_factory=dict)
     """Handle, member, and the ids of its large arrays."""
@@ -101,7 +105,7 @@ class SceneSender:
 
     @collector_paused()
     def send(self, session: int, scene: Scene) -> tuple[list[Part], Part]:
-        """What to send of members that are new, and then of a session's next scene.
+        """Return the parts that describe new members, to be sent first, and the part for a session's next scene.
 
         Raises TypeError for a scene with something in it that no document can hold; the receiver then has no part.
         """
@@ -139,7 +143,7 @@ class SceneSender:
 
 
 class _NewMembers:
-    """What one scene has that the receiver does not have yet."""
+    """Members of one scene that the receiver does not have yet."""
 
     def __init__(self, sent: _Sent) -> None:
         self._sent = sent

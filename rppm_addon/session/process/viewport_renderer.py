@@ -42,7 +42,7 @@ FRAME_SECONDS = 1.0 / 60.0
 """Pictures that follow each other faster are not given out: nobody would see them, and reading them costs time."""
 
 MOST_PICTURE_TIME = 0.1
-"""Of all time, that making pictures of a film may take from the iterations."""
+"""Largest fraction of all time that making pictures of a film may take from the iterations."""
 MOVED_SECONDS = 1.0 / 12.0
 """Between two pictures that are moved into views that follow each other."""
 MOVE_SECONDS = 1.0 / 30.0
@@ -95,7 +95,7 @@ class ViewportRenderer:
         self._shown_at = 0.0
         self._first_picture_pending = False
         self._looks = FirstLooks(context, library)
-        """What is seen until there is a first frame; then, by it, what a moving view shows."""
+        """First looks, shown until there is a first frame. Afterward they help to draw a moving view."""
         self._viewport_pictures: ViewportPictures | None = None
         self._moved_at = 0.0
         self._move_seconds = 0.0

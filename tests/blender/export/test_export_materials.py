@@ -386,6 +386,9 @@ def test_older_versions_random_walk_is_the_legacy_of_later_ones(scene, node, nam
     exported, _ = single_shader(scene, material)
     has_legacy = "RANDOM_WALK_LEGACY" in shader.bl_rna.properties[name].enum_items
     assert exported.options[name] == ("RANDOM_WALK" if has_legacy else "RANDOM_WALK_LEGACY")
+    if has_legacy:  # which files of older versions have
+        setattr(shader, name, "RANDOM_WALK_LEGACY")
+        assert single_shader(scene, material)[0].options[name] == "RANDOM_WALK_LEGACY"
 
 
 def test_an_unknown_value_leaves_that_of_the_socket(scene):

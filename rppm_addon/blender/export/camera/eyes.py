@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stereo and multiview make of a render's camera."""
+"""Position and shift of a render's camera with stereo and multiview."""
 
 import bpy
 import numpy as np

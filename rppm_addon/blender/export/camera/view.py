@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a viewport looks at, as a camera."""
+"""View of a viewport as a camera."""
 
 import bpy
 import numpy as np

@@ -32,16 +32,16 @@ class ImageTable:
     def __init__(self) -> None:
         self.images: list[Image] = []
         self.frame = 1
-        """Of the scene, whose sequences and movies are shown."""
+        """Frame of the scene at which sequences and movies are shown."""
         self.longest_side = 0
         """Pixels that no side of an image exceeds, 0 for any."""
         self.reads_by_frame = 0
         """How often an image was asked for that depends on the frame."""
         self.slices = Slices()
-        """Of the export that reads images."""
+        """Slices of the export that reads images."""
         self._indices: dict[tuple, int] = {}
         self._unfinished: dict[Hashable, dict] = {}
-        """What has been done of images that take more than a slice."""
+        """Records of the steps done so far for images that take more than one slice, by image key."""
 
     def of_node(self, node: bpy.types.Node, warn: Warn) -> int:
         """Index of a texture node's image, exported now if it is new; -1, with a warning, when it has no pixels."""
@@ -114,7 +114,10 @@ class ImageTable:
 def _export(
     image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], slices: Slices, record: dict
 ) -> Image | None:
-    """What ``load`` gives of an image; None when it has no pixels. record: what slices before have done of it."""
+    """Return the pixels of an image as ``load`` gives it; None when it has none.
+
+    record: the steps that earlier slices have done.
+    """
     known = slices.step_alone(record, "known", lambda: kept(image))  # asks for its size: Blender decodes the file
     if known is not None:
         return known
@@ -213,7 +216,7 @@ def _read_at_once(image: bpy.types.Image, look: "_Look") -> Image | None:
 
 @dataclass(frozen=True)
 class _Look:
-    """What Blender knows of an image beside its pixels."""
+    """Properties of a Blender image other than its pixels."""
 
     name: str
     space: str
@@ -224,7 +227,7 @@ class _Look:
 
     @classmethod
     def of(cls, image: bpy.types.Image) -> "_Look":
-        """Those of an image."""
+        """Return the properties of an image."""
         space, in_file = image.colorspace_settings.name, image.source != "GENERATED" and image.packed_file is None
         return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file)
 

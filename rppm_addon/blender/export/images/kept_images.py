@@ -10,7 +10,7 @@ from bpy.app.handlers import persistent
 from ....scene import Image
 
 MOST_BYTES = 1 << 30
-"""Those that were used longest ago are given back first."""
+"""Most bytes of pixels that are kept; the images that were used longest ago are dropped first."""
 _kept: dict[int, tuple[tuple, Image]] = {}
 """By session_uid, what an image was like when it was read, and its pixels."""
 _is_keeping = False
@@ -41,7 +41,7 @@ def keep(image: bpy.types.Image, pixels: Image) -> None:
 
 
 def _key(image: bpy.types.Image) -> tuple | None:
-    """What tells whether an image is the same; None for those that Blender changes without telling."""
+    """Return a key that tells whether an image is the same; None for images that Blender changes without telling."""
     if image.source != "FILE" or image.is_dirty:
         return None
     packed = image.packed_file

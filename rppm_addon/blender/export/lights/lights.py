@@ -58,7 +58,7 @@ def export_light(light_object: bpy.types.Object, matrix: np.ndarray, context: Ex
 
 
 def _portal(name: str, data: bpy.types.AreaLight, matrix: np.ndarray) -> Light:
-    """What says where the world's light comes in; of its own light nothing counts."""
+    """Return the portal of an area light, which tells where the world's light comes in and gives no light itself."""
     light = Light(name, LightKind.AREA, matrix, np.ones(3), is_portal=True)
     _fill_area(light, data, True)
     light.strength, light.spread = np.zeros(3), math.pi
@@ -116,7 +116,7 @@ def _power(data: bpy.types.Light, name: str, report: Report) -> np.ndarray:
 
 
 def _graph(data: bpy.types.Light, name: str, context: ExportContext) -> NodeGraph | None:
-    """What the light's nodes emit, as a factor of its power; None without nodes."""
+    """Return the graph of a light's nodes, whose emission is a factor of the light's power; None without nodes."""
     if not data.use_nodes or data.node_tree is None:
         return None
     tree = readable_tree(data)

@@ -21,7 +21,7 @@ _MOST_ROWS = 128
 
 @dataclass(frozen=True)
 class ViewLighting:
-    """What a viewport's shading says; the defaults leave all to the scene."""
+    """Lighting settings of a viewport's shading; the defaults leave all to the scene."""
 
     use_scene_lights: bool = True
     use_scene_world: bool = True
@@ -33,13 +33,14 @@ class ViewLighting:
     alpha: float = 0.0
     """How much of the studio light is seen behind all else."""
     blur: float = 0.0
-    """Of the studio light as it is seen there, 0 to 1."""
+    """Blur of the studio light as it is seen behind all else, 0 to 1."""
     background: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """What is seen there else."""
+    """Color that is seen behind all else as far as the studio light is not."""
 
 
 def view_lighting(shading: bpy.types.View3DShading, world: bpy.types.World | None) -> ViewLighting:
-    """That of a viewport; ``world``: the scene's, whose viewport color is the background of studio lights."""
+    """Return the lighting of a viewport; ``world``: the scene's, whose viewport color is the background of studio
+    lights."""
     lights, of_world = shading.use_scene_lights_render, shading.use_scene_world_render
     if of_world:
         return ViewLighting(lights)

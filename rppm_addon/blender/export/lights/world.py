@@ -18,7 +18,7 @@ from ..nodes.inlining import readable_tree
 from .lights import max_bounces_of
 
 _EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}
-"""Of mist, by its falloff."""
+"""Exponents of mist, by its falloff."""
 
 
 def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:

@@ -37,7 +37,7 @@ _FIELDS = {
 
 
 def title_of(attribute: str) -> str:
-    """What users call an attribute that a graph reads."""
+    """Return the words by which users know an attribute that a graph reads."""
     if attribute == ACTIVE_COLOR:
         return "the color attribute in use"
     if attribute.startswith(TANGENT):
@@ -101,7 +101,7 @@ def export_attribute(
 def _computed(
     exported: Mesh, mesh: bpy.types.Mesh, name: str, slices: Slices, record: dict[Hashable, Any]
 ) -> MeshAttribute | None:
-    """Those that take long once they are read."""
+    """Return an attribute that takes long to compute once its input is read."""
     if name == ISLAND:
         count, edges = len(mesh.vertices), slices.step(record, (name, "read"), lambda: _edges(mesh))
         numbers = slices.computed(record, name, lambda: _random_per_island(count, edges))

@@ -22,7 +22,7 @@ _FEW = 1 << 14
 _MANY = 1 << 19
 """Corners whose normals Blender computes in a slice of its own."""
 _COPIED_BYTES = 1 << 23
-"""Of an array, that are copied between two looks at the clock."""
+"""Bytes of an array that are copied between two checks of the clock."""
 _Copy = Callable[[np.ndarray], np.ndarray]
 _PART = 1 << 16
 """Elements that are looked at while they lie in a cache."""
@@ -199,7 +199,8 @@ _READERS: dict[str, Callable[[bpy.types.Mesh, Any, _Copy], np.ndarray | None]] =
     "corner_normals": read_corner_normals,
     "corner_uv": _render_uv,
 }
-"""Of the arrays of a mesh, by their names; each takes what the array may resemble, and what copies Blender's."""
+"""Functions that read the arrays of a mesh, by the names of the arrays. Each takes the mesh, an array that the result
+may resemble, and a function that copies Blender's array."""
 
 
 def read_uv(mesh: bpy.types.Mesh, name: str, before: np.ndarray | None = None, copy: _Copy = np.copy) -> np.ndarray:

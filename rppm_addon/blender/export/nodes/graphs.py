@@ -58,10 +58,6 @@ class _TooDeep(Exception):
         self.source = source
 
 
-_OTHER_NAMES = {"RANDOM_WALK_LEGACY": "RANDOM_WALK"}
-"""What Blender 5.2 calls choices of older files."""
-
-
 class GraphExporter:
     """Builds the graph of one material, world or light.
 
@@ -125,7 +121,7 @@ class GraphExporter:
         )
 
     def value(self, socket: bpy.types.NodeSocket, path: Path) -> object:
-        """What an input of a node gets: a Link, a number, or a tuple of three."""
+        """Return the value of an input of a node: a Link, a number, or a tuple of three."""
         source = find_source(socket, path, self._links)
         if not isinstance(source, Source):
             if source.broken is not None:
@@ -261,7 +257,6 @@ class GraphExporter:
         options: dict[str, object] = {}
         for name, values in kind.options.items():
             value = getattr(node, name, values[0])
-            value = _OTHER_NAMES.get(value, value)
             if value == "":  # a choice of a newer version of Blender, which shows it as none
                 value = values[0]
             if value not in values:
@@ -271,7 +266,7 @@ class GraphExporter:
         return options
 
     def coordinates_of(self, node: bpy.types.Node, path: Path) -> object:
-        """What the Vector input of a texture node gets."""
+        """Return the value of the Vector input of a texture node."""
         socket = self.given_coordinates(node, path)
         return self.implicit_coordinates(node) if socket is None else self.value(socket, path)
 
@@ -323,7 +318,7 @@ def _is_undefined(node: bpy.types.Node) -> bool:
 
 
 def node_key(node: bpy.types.Node, path: Path) -> tuple[int, ...]:
-    """What tells a node in its groups from all others."""
+    """Return a key that tells a node in its groups from all others."""
     return (node.as_pointer(), *(group.as_pointer() for group in path))
 
 
@@ -332,7 +327,7 @@ def _output_key(source: Source) -> tuple:
 
 
 _UNREADABLE = (AttributeError, IndexError, KeyError, RuntimeError, TypeError, ValueError)
-"""What reading a node raises that is broken or of another version of Blender."""
+"""Errors raised by reading a node that is broken or of another version of Blender."""
 
 _IRREGULAR = {"CameraData": "camera", "RGBToBW": "rgb_to_bw", "RGBCurve": "rgb_curve", "BsdfAnisotropic": "bsdf_glossy"}
 

@@ -17,7 +17,7 @@ _READ_HERE = {"NodeReroute", "NodeFrame", "NodeGroupInput", "NodeGroupOutput", "
 _NATIVE = ("GeometryNode", "FunctionNode", "Node")
 """Prefixes of nodes that shader trees share with other trees, and add-ons do not use."""
 _NUMBERED = re.compile(r"\d+_(.*)", re.DOTALL)
-"""What Blender calls the copy of a node."""
+"""Pattern of the name that Blender gives the copy of a node: a number before the name of the node."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class ReadableTree:
 
     tree: bpy.types.NodeTree
     owner: "bpy.types.InlineShaderNodes | None" = None
-    """Of a tree that Blender made, which lives as long as this."""
+    """Owner of a tree that Blender made; the tree lives as long as its owner."""
     nodes: dict[tuple[str, str], bpy.types.Node] = field(default_factory=dict)
     """By bl_idname and name, the user's nodes of which Blender made that tree, those in groups included."""
 

@@ -55,7 +55,7 @@ class LinkTable:
 
 
 def find_source(socket: bpy.types.NodeSocket, path: Path, links: LinkTable) -> Source | Unlinked:
-    """What feeds an input socket of a node that lies in the groups of ``path``."""
+    """Return the source of an input socket of a node that lies in the groups of ``path``."""
     start = socket
     passed: set[tuple[int, Path]] = set()
     while True:

@@ -24,7 +24,7 @@ class MaterialTable:
     def __init__(self, context: ExportContext) -> None:
         self.materials: list[Material] = []
         self.attributes: list[dict[str, str]] = []
-        """Of each material, the attributes that its nodes read, with the name of such a node."""
+        """Attributes that the nodes of each material read, each with the name of a node that reads it."""
         self.sampled: frozenset[str] = frozenset()
         """Attributes that rays of nodes read wherever they hit, so that all meshes are asked for them."""
         self._context = context
@@ -142,7 +142,7 @@ def _aov_outputs(tree: bpy.types.NodeTree, path: Path) -> Iterator[tuple[bpy.typ
 
 
 def _displace(exporter: GraphExporter, material: bpy.types.Material, output: bpy.types.Node) -> None:
-    """What moves vertices, and the bump by its height."""
+    """Set the displacement of vertices and the bump by its height, as the material's displacement method asks."""
     graph = exporter.graph
     displacement = exporter.value(output.inputs["Displacement"], ())
     if material.displacement_method != "BUMP":

@@ -311,7 +311,7 @@ def _sky_image(name: str, sky: Sky) -> Image:
 
 
 def sky_of(node: bpy.types.Node) -> Sky:
-    """What a Sky Texture node says."""
+    """Return the sky that a Sky Texture node describes."""
     values = {name: getattr(node, name) for name in Sky.__dataclass_fields__ if hasattr(node, name)}
     values["sun_direction"] = tuple(values.get("sun_direction", (0.0, 0.0, 1.0)))
     if values["sky_type"] == "NISHITA":  # Blender 4

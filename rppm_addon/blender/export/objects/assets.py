@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What objects belong to, as Cryptomatte's assets have it."""
+"""Assets that objects belong to, as Cryptomatte defines them."""
 
 import bpy
 
@@ -8,7 +8,10 @@ from ....scene.cryptomatte import ASSETS
 
 
 def export_asset_names(depsgraph: bpy.types.Depsgraph, settings: RenderSettings) -> dict[str, str]:
-    """Of objects that have a parent, by name, the names of their topmost ones; none where no pass asks for them."""
+    """Return the name of the topmost parent of each object that has a parent, by the object's name.
+
+    The result is empty where no pass asks for assets.
+    """
     if not any(name.startswith(ASSETS) for name in settings.passes):
         return {}
     objects = (block for block in depsgraph.ids if isinstance(block, bpy.types.Object))

@@ -15,7 +15,7 @@ from ..meshes.attributes import attribute_values
 _NO_NUMBER = 0x7FFFFFFF
 """Ends a persistent identifier that has fewer levels than the eight that it has room for."""
 _PARTS = ("mesh", "curves", "pointcloud", "volume", "grease_pencil")
-"""Of a geometry set beside its instances."""
+"""Components that a geometry set may have beside its instances."""
 
 
 @dataclass(slots=True)
@@ -31,7 +31,7 @@ class _Level:
     values: dict[str, np.ndarray]
     """By name, (instances, 4) as colors."""
     references: np.ndarray
-    """What each multiplies: an index of ``sources``."""
+    """Index into ``sources`` of what each instance multiplies."""
     sources: list["_Source"]
 
 
@@ -43,7 +43,7 @@ class _Members:
 
 
 _Source = _Level | _Members | None
-"""What may multiply on; None ends it."""
+"""Geometry set or collection that may multiply further objects; None where nothing is multiplied further."""
 
 
 class InstanceAttributes:
@@ -51,19 +51,19 @@ class InstanceAttributes:
 
     def __init__(self) -> None:
         self.depsgraph: bpy.types.Depsgraph | None = None
-        """That of the instances, while any are asked about."""
+        """Depsgraph of the instances while any are asked about, or else None."""
         self._sources: dict[int, _Source] = {}
-        """Of evaluated objects, by their addresses."""
+        """Sources of evaluated objects, by the addresses of the objects."""
         self._completed: set[int] = set()
         """Addresses of those whose made up numbers were looked at."""
 
     def forget(self) -> None:
-        """What multiplies may have changed."""
+        """Forget all sources, because the objects that multiply others may have changed."""
         self._sources = {}
         self._completed = set()
 
     def value(self, instance: bpy.types.DepsgraphObjectInstance, name: str) -> tuple[float, ...] | None:
-        """Of that name as a color, of the innermost level that has it; None where none has."""
+        """Return the attribute of that name as a color, from the innermost level that has it; None where none has."""
         if not name:
             return None
         owner, numbers = instance.parent, _numbers(instance)

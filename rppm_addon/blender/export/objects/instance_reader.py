@@ -26,7 +26,8 @@ _COORDINATES: dict[str, Callable[[bpy.types.DepsgraphObjectInstance], tuple[floa
     INSTANCER_GENERATED: lambda multiplied: tuple(0.5 * value - 0.5 for value in multiplied.orco),
     INSTANCER_UV: lambda multiplied: (*multiplied.uv, 0.0),
 }
-"""What instances have of that which multiplies them, as Cycles takes it; zero where an object stands for itself."""
+"""Functions that return the coordinates of an instance on the object that multiplies it, by attribute name, as in
+Cycles. An object that stands for itself has zeros."""
 _WHOLE = {"OBJECT", "INSTANCER"}
 """Domains of attributes that objects have as a whole."""
 
@@ -64,7 +65,10 @@ class InstanceReader:
     def _moved(
         self, source: bpy.types.Object, matrix: np.ndarray, visibility: RayVisibility, before: Instance
     ) -> Instance:
-        """What Blender does not name as changed may be animated, but for mesh and materials."""
+        """Return the instance of an object that at most was moved, with the mesh and the materials that it had before.
+
+        The rest is read again, as it may be animated without Blender naming the object as changed.
+        """
         name, materials = source.name, before.materials
         visibility, holdout = self.masked(source, visibility, source.is_holdout)
         return Instance(
@@ -128,7 +132,7 @@ class InstanceReader:
         }
 
     def light_group(self, source: bpy.types.Object, owner: bpy.types.Object) -> str:
-        """That of an object, or else of what multiplies it."""
+        """Return the light group of an object, or else that of the object that multiplies it."""
         return (light_group_of(source) or light_group_of(owner)) if self._context.has_light_groups else ""
 
     def linking(self, owner: bpy.types.Object) -> LightLinking | None:
@@ -162,7 +166,7 @@ class InstanceReader:
 
     @property
     def culling(self) -> Culling:
-        """What is left out."""
+        """Culling, which tells the objects that are left out."""
         return self._context.culling
 
     def masked(self, owner: bpy.types.Object, visibility: RayVisibility, holdout: bool) -> tuple[RayVisibility, bool]:

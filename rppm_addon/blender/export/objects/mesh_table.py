@@ -31,9 +31,9 @@ class MeshTable:
 
     def __init__(self, context: ExportContext) -> None:
         self.meshes: list[Mesh] = []
-        """Those that nothing uses any more are empty."""
+        """Exported meshes; meshes that nothing uses any more are empty."""
         self.rings: dict[int, Rings] = {}
-        """Of meshes of strands, by their places."""
+        """Rings of the tubes of meshes of strands, by the places of the meshes."""
         self._context = context
         self._report = context.report
         self._places: dict[int, int | None] = {}
@@ -72,7 +72,7 @@ class MeshTable:
         self._owners[self._keys[place]].add(owner)
 
     def forget(self, owners: set[int]) -> None:
-        """What these objects showed has changed."""
+        """Forget the meshes that these objects showed, because they have changed."""
         self._before = {}
         for key in [key for key, known in self._owners.items() if known & owners] if owners else ():
             place = self._places[key]
@@ -130,7 +130,7 @@ class MeshTable:
         return place
 
     def _record(self, key: int, owner: int) -> dict[Hashable, Any]:
-        """What was read of a mesh that an object brings."""
+        """Return the record of what earlier slices have read of a mesh that an object brings."""
         if key not in self._unfinished or self._unfinished[key][0] != owner:
             self._unfinished[key] = owner, {}
         return self._unfinished[key][1]

@@ -31,7 +31,7 @@ SURFACE_TYPES = {"MESH", *CONVERTED_TYPES, *ROUND_TYPES}
 UNSUPPORTED_TYPES = {"VOLUME": "volumes"}
 
 _PARTS = {"CURVES": -2, "POINTCLOUD": -3}
-"""What one object shows beside its mesh, in its identity."""
+"""Last number in the identity of the hair curves or points that one object shows beside its mesh, by object type."""
 _HAIR = -1
 """Likewise, what its particle systems bring."""
 
@@ -53,13 +53,16 @@ def identity_of(
 
 
 def identity_of_hair(identity: Identity, source: bpy.types.Object) -> Identity:
-    """Of what the particle systems of an instance's object bring; source: the original object."""
+    """Return the identity of the hair that an instance's object has by its particle systems.
+
+    identity: that of the instance; source: the original object.
+    """
     return (*(identity if len(identity) > 1 else (*identity, source.session_uid)), _HAIR)
 
 
 @dataclass
 class Placed:
-    """What a pass over a depsgraph found."""
+    """Instances and lights that a pass over a depsgraph found."""
 
     instances: list[Instance] = field(default_factory=list)
     lights: list[Light] = field(default_factory=list)
@@ -68,12 +71,12 @@ class Placed:
     lights_alone: dict[int, int] = field(default_factory=dict)
     """By session_uid, the index of the only light of each light object."""
     identities: dict[int, Identity] = field(default_factory=dict)
-    """Of instances and lights by their id(), if asked for."""
+    """Identities of instances and lights, by their id(), if asked for."""
 
 
 @dataclass(slots=True)
 class _Kind:
-    """What the instances of one object and mesh have in common; a mesh of None is none to be rendered."""
+    """Data that the instances of one object and mesh have in common; where the mesh is None, none is rendered."""
 
     uid: int
     learned: bool = False
@@ -91,14 +94,14 @@ class _Kind:
 
 @dataclass(slots=True)
 class _Owner:
-    """What multiplies others."""
+    """Object that multiplies others."""
 
     uid: int
     shown: bool
     visibility: RayVisibility
-    """Of what it multiplies, beside that of each itself."""
+    """Visibility of the objects that it multiplies, combined with the visibility of each object itself."""
     holdout: bool
-    """Of what it multiplies, in place of that of each itself, as in Cycles."""
+    """Whether the objects that it multiplies are holdouts, in place of their own settings, as in Cycles."""
     shadow_catcher: bool
     has_particles: bool
 
@@ -121,7 +124,7 @@ class ObjectPass:
 
     def _begin(self, unchanged: dict[int, Instance], moved: dict[int, Instance]) -> None:
         self._identity: Identity = ()
-        """Of what is being placed."""
+        """Identity of the instance or light that is being placed."""
         self.place = 0
         """How many instances have been dealt with."""
         self.count = 0
@@ -140,7 +143,8 @@ class ObjectPass:
         self._missing: dict[tuple[str, str, str], dict[str, None]] = {}
         """By names of material, node and attribute, the objects that do not have it."""
         self._lacks_nothing: set[tuple] = set()
-        """Of instances that have all that they are asked for: mesh, how many attributes it has, materials, own ones."""
+        """Keys of instances that have all attributes that their materials read. A key holds the mesh, the number of the
+        mesh's attributes, the materials, and the names of the instance's own attributes."""
         self._kinds: dict[tuple[int, int], _Kind] = {}
         """By the addresses of the object and its mesh."""
         self._owners: dict[int, _Owner] = {}
@@ -308,7 +312,7 @@ class ObjectPass:
     def _export_hair(
         self, instance: bpy.types.DepsgraphObjectInstance, source: bpy.types.Object, matrix: np.ndarray
     ) -> None:
-        """What the particle systems of an object bring, whether it is seen itself or not."""
+        """Export the hair of an object's particle systems, whether the object itself is seen or not."""
         if len(source.particle_systems) == 0:
             return
         if instance.is_instance and instance.instance_object.data != source.data:
@@ -486,7 +490,7 @@ class ObjectPass:
             self._report.slices.rest()
 
     def _keep_usable(self) -> None:
-        """Of those that were placed since it was called last."""
+        """Add the instances that were placed since the last call to the result, except those with unusable matrices."""
         if not self._placed:
             return
         given = np.array([matrix for _, matrix, _ in self._placed])

@@ -56,7 +56,7 @@ class ObjectExporter:
         depsgraph: bpy.types.Depsgraph,
         shown: Callable[[bpy.types.Object], bool] | None = None,
     ) -> Placed:
-        """What export() gives, for a depsgraph in which nothing has changed since the pass was begun.
+        """Return the result of export() for a depsgraph in which nothing has changed since the pass was begun.
 
         Raises Unfinished when the slice is over, and ExportStopped.
         """

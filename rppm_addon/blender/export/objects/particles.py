@@ -15,7 +15,7 @@ class ParticleTable:
 
     def __init__(self) -> None:
         self.frame = 0.0
-        """Of the scene."""
+        """Frame of the scene."""
         self._systems: dict[int, list[tuple]] = {}
 
     def forget(self) -> None:
@@ -23,7 +23,10 @@ class ParticleTable:
         self._systems = {}
 
     def of(self, instance: bpy.types.DepsgraphObjectInstance) -> Particle | None:
-        """What the Particle Info node gives for a multiplied instance; None when it stands for no particle."""
+        """Return the values of the Particle Info node for an instance; None when it stands for no particle.
+
+        instance: one that an object multiplies.
+        """
         system = instance.particle_system
         if system is None:
             return None
@@ -38,7 +41,7 @@ class ParticleTable:
 
 
 def _rows(system: bpy.types.ParticleSystem) -> list[tuple]:
-    """Of each particle the values of _COLUMNS."""
+    """Return the values of _COLUMNS for each particle."""
     particles, columns = system.particles, []
     for name, width in _COLUMNS.items():
         values = np.empty(width * len(particles), np.float32)

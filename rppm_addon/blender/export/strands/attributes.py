@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What nodes read of strands and points."""
+"""Attributes of strands and points that nodes read."""
 
 import bpy
 import numpy as np

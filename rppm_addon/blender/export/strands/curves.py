@@ -9,7 +9,7 @@ from ..meshes.element_arrays import elements
 from .tubes import Strands
 
 DEFAULT_RADIUS = 0.005
-"""Of curves that have none, as in Cycles, meters."""
+"""Radius of curves that have none, in meters, as in Cycles."""
 
 
 def read_curves(data: bpy.types.Curves) -> Strands:

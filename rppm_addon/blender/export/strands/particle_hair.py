@@ -108,7 +108,7 @@ def _paths(source: bpy.types.Object, hair: HairSystem, to_object: np.ndarray) ->
 
 
 def _paths_by_function(source: bpy.types.Object, hair: HairSystem, strands: range, to_object: np.ndarray) -> np.ndarray:
-    """Of some strands, by Blender's function, which gives a key at a time."""
+    """Return the paths (strands, steps, 3) of some strands by Blender's function, which gives one key at a time."""
     ask, first = hair.system.co_hair, hair.first
     keys = [
         tuple(ask(object=source, particle_no=first + strand, step=step))

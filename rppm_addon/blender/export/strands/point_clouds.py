@@ -9,7 +9,7 @@ import numpy as np
 from ..meshes.element_arrays import elements
 
 DEFAULT_RADIUS = 0.01
-"""Of points that have none, as in Cycles, meters."""
+"""Radius of points that have none, in meters, as in Cycles."""
 
 
 @dataclass
@@ -25,7 +25,7 @@ class Points:
 
 
 def read_points(data: bpy.types.PointCloud, farthest: float) -> Points:
-    """Of an evaluated point cloud, without points that are not finite, farther off or without extent."""
+    """Read an evaluated point cloud, without points that are not finite, beyond ``farthest``, or without extent."""
     count = len(data.points)
     if count == 0:
         return Points(np.zeros((0, 3), np.float32), np.zeros(0, np.float32))

@@ -33,7 +33,8 @@ from .spheres import level_of, sphere_triangles, sphere_vertices, unit_sphere
 from .tubes import MOST_TRIANGLES, Rings, Strands, rings_of, tube_triangles, tube_vertices, usable
 
 _MIDDLE = (0.5, 0.5, 0.5)
-"""Of a texture space in which generated coordinates are those of the object, as Cycles has them without others."""
+"""Location and size of a texture space in which generated coordinates equal object coordinates, as in Cycles where
+there are no others."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class Hair:
     """Whether anything asks for places on the surface that it grows on."""
 
     def as_pointer(self) -> int:
-        """What tells it from others in memory."""
+        """Return the address of the object, which tells its hair from other hair in memory."""
         return self.source.as_pointer()
 
     def read(self) -> Strands:

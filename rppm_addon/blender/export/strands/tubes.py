@@ -15,14 +15,14 @@ import numpy as np
 
 _MOST_SIDES, _LEAST_SIDES = (11, 7, 5), 3
 _MANY_TRIANGLES = 1 << 17
-"""Of one object; tubes have as many sides as this allows."""
+"""Triangles of one object up to which its tubes have more than _LEAST_SIDES; they have as many as this allows."""
 _TURN = math.radians(12.0)
 """By which a tube turns from one ring to the next at most, as far as the settings allow."""
 _BEND = 0.1
-"""Of radii, as a share, by which they leave a straight line before rings follow."""
+"""Relative deviation of radii from a straight line beyond which rings are added."""
 _BENT_STEPS = 4
 MOST_TRIANGLES = 1 << 26
-"""Of one object, some 6 GB on the device."""
+"""Most triangles of one object, some 6 GB on the device."""
 
 
 @dataclass
@@ -60,17 +60,17 @@ class Rings:
 
     @property
     def part_count(self) -> int:
-        """Of all tubes, from ring to ring."""
+        """Number of parts of all tubes, each from one ring to the next."""
         return len(self.key) - (len(self.starts) - 1)
 
     @functools.cached_property
     def sides(self) -> int:
-        """Of the tubes."""
+        """Number of sides of each tube."""
         return next((n for n in _MOST_SIDES if 2 * n * self.part_count <= _MANY_TRIANGLES), _LEAST_SIDES)
 
     @property
     def triangle_count(self) -> int:
-        """Of all tubes."""
+        """Number of triangles of all tubes."""
         return 2 * self.sides * self.part_count
 
     def per_vertex(self, of_rings: np.ndarray) -> np.ndarray:

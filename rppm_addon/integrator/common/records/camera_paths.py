@@ -9,7 +9,7 @@ from ....gl.storage_blocks import StorageBlock
 
 
 class Scatter(enum.IntEnum):
-    """What Cycles tells apart of how a surface scatters, in the order of the passes of it (scene/passes.py)."""
+    """Kinds of scattering at a surface that Cycles tells apart, in the order of their passes (scene/passes.py)."""
 
     NONE = 0
     DIFFUSE = 1
@@ -18,7 +18,8 @@ class Scatter(enum.IntEnum):
 
 
 class PathHistory(enum.IntFlag):
-    """What passes of light ask for of a camera path, above the Scatter of its first surface that is not transparent."""
+    """Flags of a camera path's history for the passes of light. They stand above the Scatter of its first surface that
+    is not transparent."""
 
     AGAIN = 4
     """More than one has scattered it."""
@@ -77,4 +78,4 @@ that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`
 ``lit_normal`` and ``lit_from`` tell how these shadow rays chose their light (shaders/importons/scatter_point.glsl)."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
-"""Of the pixels of a band, W/(m^2 sr), and alpha."""
+"""Radiance of the pixels of a band, W/(m^2 sr), and alpha."""

@@ -26,7 +26,7 @@ over the index before it; f0 is the reflectance at normal incidence, or GLASS: t
 
 
 class MicrofacetKind(enum.IntEnum):
-    """What a lobe is."""
+    """Kinds of GGX, sheen, toon and hair lobes."""
 
     NONE = 0
     MIRROR = 1
@@ -53,7 +53,7 @@ class MicrofacetKind(enum.IntEnum):
     GLOSSY_TOON = 11
     """About the mirrored direction."""
     HAIR_REFLECTION = 12
-    """Of fibers, as those that follow: programs know them where HAIR_LOBES is defined."""
+    """Lobe of fibers, as are the kinds that follow: programs know them where HAIR_LOBES is defined."""
     HAIR_TRANSMISSION = 13
     HAIR_CHIANG = 14
     HAIR_HUANG = 15

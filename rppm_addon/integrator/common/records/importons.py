@@ -40,7 +40,7 @@ StorageBlock("Importons", "Importon importons[];")
 
 
 class GatherFlag(enum.IntFlag):
-    """What importons gather; without the first they take all photons."""
+    """Flags of the photons that an importon gathers; without the first flag it takes all photons."""
 
     FINAL_GATHER_ORIGIN = 1
     """It leaves indirect photons to the path, which goes on for them."""

@@ -31,7 +31,7 @@ class PhotonFlag(enum.IntFlag):
     AFTER_ROUGH_BOUNCE = 8
     """A diffuse or rough surface has scattered the path before."""
     INDIRECT = 16
-    """What stores photons has scattered it."""
+    """A surface that stores photons has scattered the path."""
     DIRECT = 32
     """Nothing has scattered it, but for objects that cast no shadow."""
     NOT_DIFFUSE = 64
@@ -47,7 +47,7 @@ class PhotonHistory(enum.IntFlag):
     path so many bits lower, where a photon has ACTIVE and STORED."""
 
     SCATTERED_BY_LOBE = 128
-    """What scattered it last was a lobe that is not diffuse."""
+    """A lobe that is not diffuse was the last to scatter the path."""
     CAUSTIC = 256
     """A diffuse surface has scattered what had come by such a lobe."""
 
@@ -55,7 +55,7 @@ class PhotonHistory(enum.IntFlag):
 Constants("PhotonFlags", PHOTON=PhotonFlag)
 Constants("PhotonHistory", PHOTON=PhotonHistory, PHOTON_HISTORY_SHIFT=7)
 PHOTON_FLAG_BITS = 10
-"""Of a photon's word; the others are a float's."""
+"""Number of flag bits in a photon's ``flags`` word; its other bits are those of a float."""
 Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
 Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
 """A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""

@@ -35,4 +35,4 @@ StorageBlock(
 )
 """How many photons are stored, how many of these are global and indirect ones, and the numbers of the stored ones."""
 StorageBlock("PhotonGroups", "uint photon_groups[];")
-"""Of the photons that left the lights, the numbers of their light groups."""
+"""Light group numbers of the photons that left the lights."""

@@ -8,7 +8,7 @@ from ....gl.constants import Constants
 
 @enum.unique
 class RandomStage(enum.IntEnum):
-    """What random numbers are for: those of one stage have nothing to do with those of another."""
+    """Purposes of random numbers. The numbers of one stage are independent of those of another."""
 
     EMISSION = 1
     PHOTONS = 2

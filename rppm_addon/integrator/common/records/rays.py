@@ -16,12 +16,12 @@ RAY = Record("Ray", origin="vec3", source_triangle="uint", direction="vec3", max
 StorageBlock("Rays", "Ray rays[];")
 StorageBlock("ShadowRays", "Ray shadow_rays[];")
 HIT = Record("Hit", triangle="uint", b1="float", b2="float", distance="float")
-"""What any kind of visibility yields; triangle NO_TRIANGLE is a miss.
+"""Hit of a ray, as any kind of visibility yields it; triangle NO_TRIANGLE is a miss.
 The point is (1 - b1 - b2) v0 + b1 v1 + b2 v2."""
 StorageBlock("Hits", "Hit hits[];")
 StorageBlock("Visibility", "uint visibility[];")
-"""Of shadow rays: 1 where nothing is in the way."""
+"""Visibility of shadow rays: 1 where nothing is in the way."""
 StorageBlock("Contributions", "vec4 contributions[];")
 StorageBlock("LightTriangles", "uint light_triangles[];")
-"""What shadow rays add where nothing is in their way, with a signed code (shaders/common/light_sets.glsl) of whether a
-gathering ray found it and of the light's LightLink; and the emissive triangles that they go to."""
+"""Radiance that shadow rays add where nothing is in their way, with a signed code (shaders/common/light_sets.glsl) of
+whether a gathering ray found it and of the light's LightLink; and the emissive triangles that the shadow rays go to."""
