@@ -35,7 +35,7 @@ TESTED_VERSION = "25.0.7-2~bpo12+1"
 well, if it starts, and named."""
 TRY_AGAIN_SECONDS = 24 * 3600.0
 LONGEST_SECONDS = 60
-"""That apt may take at a time: where the mirrors are out of reach, set-up does not wait for long."""
+"""Seconds that apt may take at a time: where the mirrors are out of reach, set-up does not wait for long."""
 
 # Without the hooks with which container images delete what apt fetches.
 _CONFIGURATION = """
@@ -58,7 +58,7 @@ class UnavailableError(Exception):
 
 
 def _run(command: Sequence[str], folder: Path | None = None, check: bool = True) -> str:
-    """What a program prints. Raises UnavailableError with its last complaint, if it fails and that counts."""
+    """Return what a program prints. Raises UnavailableError with its last complaint, if it fails and that counts."""
     try:
         run = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=LONGEST_SECONDS)
     except (OSError, subprocess.TimeoutExpired) as error:

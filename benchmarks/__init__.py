@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What make bench-... measures."""
+"""Benchmarks that make bench-... runs."""
 
 import sys
 from pathlib import Path

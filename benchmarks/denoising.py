@@ -30,7 +30,7 @@ WAYS = {
     "albedo, normal; fast": (DenoisingInputPasses.RGB_ALBEDO_NORMAL, DenoisingPrefilter.FAST),
     "albedo, normal; accurate": (DenoisingInputPasses.RGB_ALBEDO_NORMAL, DenoisingPrefilter.ACCURATE),
 }
-"""What guides; prefilter."""
+"""Input passes that guide the denoiser and their prefilter, by name; None for the noisy picture."""
 
 
 def frames(renderer: Renderer, scene: Scene, samples: list[int]) -> Iterator[tuple[int, Frame]]:

@@ -163,7 +163,7 @@ def frame_times(size: int, side: int, frames: int, iterations: int, persistent: 
 
 
 def held(frames: int, persistent: bool) -> list[dict[str, int]]:
-    """What is held after every tenth of an animation's frames in which everything changes."""
+    """Return what is held after every tenth of the frames of an animation in which everything changes."""
     scene = moving_scene()
     with tempfile.TemporaryDirectory() as folder, HeldByFrame(every=max(1, frames // 10)) as watch:
         set_up(scene, folder, 16, frames, persistent, iterations=1, photons=512)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a benchmark ran on, and the clock that means something there."""
+"""Machine that a benchmark ran on, and the clock that means something there."""
 
 import datetime
 import platform

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What benchmarks of two routes to the same picture take: their command line and their scenes."""
+"""Command line and scenes of benchmarks that compare two routes to the same picture."""
 
 import argparse
 import dataclasses

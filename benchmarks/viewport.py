@@ -124,7 +124,7 @@ def in_frame(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
 
 
 def rppm_pictures(window: Window, clock: Clock, scene: Scene, marks: list[float]) -> Iterator[dict[str, object]]:
-    """What is shown after so many seconds, and the film's own picture at that moment."""
+    """Yield the picture that is shown after so many seconds, and the film's own picture at that moment."""
     viewing, size, started = window.viewing, scene.camera.resolution, clock.now()
     viewing.show(scene, 1, False)
     for mark in marks:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests of several floors share."""
+"""Fixtures and settings that tests of several floors share."""
 
 import os
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Check that docstrings of the package name what they describe.
+"""Check that docstrings name what they describe.
 
 An editor shows a docstring by itself. One that begins with "Of", "What", "That" or "Those" leaves its reader to guess
 what the thing is. Strings below attributes and constants count as docstrings, since editors show these as well.
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+FOLDERS = ("rppm_addon", "extension", "benchmarks", "tools", "tests")
 _RIDDLE = re.compile(r"\s*(Of|What|That|Those)\b")
 
 
@@ -31,7 +32,8 @@ def main() -> int:
     """Print the docstrings to be rewritten; returns the exit status."""
     problems = [
         f"{path.relative_to(ROOT)}:{line}: begin with what it is, a noun, or with a verb: {first}"
-        for path in sorted((ROOT / "rppm_addon").rglob("*.py"))
+        for folder in FOLDERS
+        for path in sorted((ROOT / folder).rglob("*.py"))
         for line, first in riddles(path.read_text(encoding="utf-8"))
     ]
     print("\n".join(problems) or "docstrings name what they describe")

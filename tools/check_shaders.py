@@ -59,7 +59,7 @@ def numbers() -> list[str]:
 
 
 def lengths() -> list[str]:
-    """What is too long in shaders."""
+    """List lines and functions of shaders that are too long."""
     functions = [
         f"{path.relative_to(SHADER_FOLDER).as_posix()}:{line}: {name} has {lines} lines, {FUNCTION_LINES} at most"
         for path in sorted(SHADER_FOLDER.rglob("*.*"))
@@ -85,7 +85,7 @@ BY_RANGES = {
 
 
 def large_blocks(variant: Variant) -> list[str]:
-    """Those of a shader's blocks that may be large, as many as a program may have at once."""
+    """List the blocks of a shader that may be large, as many as a program may have at once."""
     try:
         blocks = variant.expand().blocks
     except ShaderError:
@@ -94,7 +94,7 @@ def large_blocks(variant: Variant) -> list[str]:
 
 
 def check_shader(variant: Variant, reads_texels: bool, large: Sequence[str] = ()) -> str:
-    """What glslangValidator has against a stage file; empty when nothing. large: blocks that are to be texels."""
+    """Return glslangValidator's errors for a stage file; empty when none. large: blocks that are to be texels."""
     try:
         source = variant.expand(reads_texels, large, whole=True)
     except ShaderError as error:

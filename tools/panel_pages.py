@@ -37,7 +37,7 @@ OF_BLENDER = {
     "Shader AOV": "Names of the values that AOV Output nodes of materials give to pictures of their own.",
     "Light Groups": "Names of groups of lights, each of which has a picture of what it alone lights.",
 }
-"""What panels hold that Blender draws by itself, by their titles."""
+"""Contents of the panels that Blender draws by itself, by their titles."""
 
 
 @dataclass

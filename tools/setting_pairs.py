@@ -18,7 +18,7 @@ SIZE = (240, 180)
 GAP = 4
 """White pixels between two pictures."""
 QUALITY = 90
-"""Of JPEG."""
+"""JPEG quality."""
 COMMON: Mapping[str, object] = {
     "scene.rppm.samples": 8,
     "scene.rppm.photons": 8192,
@@ -35,7 +35,7 @@ COMMON: Mapping[str, object] = {
     "scene.rppm.use_adaptive_sampling": False,
     "scene.rppm.time_limit": 0.0,
 }
-"""What all have where they say nothing else: few samples, as noise is to be seen, and the settings' defaults."""
+"""Settings of all pictures unless a pair sets others: few samples, as noise is to be seen, and the defaults."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +43,11 @@ class Pair:
     """Pictures of a scene that differ in one setting."""
 
     path: str
-    """Of the setting: scene.rppm.samples. Of materials it is set in all."""
+    """Path of the setting: scene.rppm.samples. A setting of materials is set in all of them."""
     values: tuple
     labels: tuple[str, ...]
     caption: str
-    """What is to be seen; a sentence or two."""
+    """Description of what is to be seen; a sentence or two."""
     sample: str = "first_light"
     """The scene, of docs/samples."""
     others: Mapping[str, object] = field(default_factory=dict)

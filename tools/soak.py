@@ -46,7 +46,7 @@ def quarters(lines: list[dict[str, float]], name: str) -> list[float]:
 
 
 def wrong(lines: list[dict[str, float]]) -> list[str]:
-    """What grew, and what was not as it should be."""
+    """List the values that grew, and whatever else was not as it should be."""
     found = []
     for name, allowed in FLAT.items():
         middles = quarters(lines, name)

@@ -101,7 +101,7 @@ def changed_since(commit: str | None) -> list[str]:
 
 
 def bounded(names: list[str], changed: list[str], root: Path = ROOT) -> list[str]:
-    """Those of the files that have long tests; of too many those that were changed, if these are few."""
+    """List the files that have long tests; of too many, the files that were changed, if these are few."""
     long = [name for name in names if "mark.long" in (root / name).read_text(encoding="utf-8")]
     if len(long) <= MOST_FILES:
         return long

@@ -19,7 +19,7 @@ PARTS: dict[str, tuple[str, tuple[int, int, int, int] | None]] = {
 }
 """By picture: how it is kept, and left, top, right and bottom of the part, all where it is None."""
 QUALITY = 85
-"""Of JPEG."""
+"""JPEG quality."""
 
 
 def main() -> None:

@@ -115,7 +115,7 @@ class BoundingVolumes:
         self.node_count = len(packed)
 
     def trace(self, triangles: moderngl.Buffer, rays: moderngl.Buffer, hits: moderngl.Buffer, count: int) -> None:
-        """What DeepCubemap.trace does."""
+        """Trace rays, as DeepCubemap.trace does."""
         buffers = {"Rays": rays, "Hits": hits, "Triangles": triangles, "Nodes": self._nodes, "Order": self._order}
         for first in range(0, count, 1 << 18):
             end = min(first + (1 << 18), count)

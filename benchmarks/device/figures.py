@@ -166,7 +166,7 @@ def _ray_counts(subject: Subject, stride: int = 1) -> dict[str, int]:
 
 
 def _or_failure(measure: Callable[..., dict], *arguments) -> dict:
-    """What a measurement gives, or why the device could not do it."""
+    """Return the result of a measurement, or why the device could not do it."""
     try:
         return measure(*arguments)
     except RppmError as error:

@@ -32,7 +32,7 @@ STAGES = {
 }
 """Timers of the photon mapper by stage of the paper's Fig. 3 (direct light is in its place of shadow maps)."""
 OTHER = "other"
-"""What an iteration takes beside its timers."""
+"""Name of the time that an iteration takes beside its timers."""
 
 _PATH_LENGTHS = {
     "bathroom": (4, 4),
@@ -54,7 +54,7 @@ class Scale:
     photons: int
     """Where neither is what changes; the paper has 1 megapixel and 262144 photons."""
     iterations: int
-    """Of the figure that follows a render."""
+    """Iterations of the figure that follows a render."""
     repetitions: int
     """Iterations that a point's times are the mean of, after one that is not counted."""
     path_lengths: tuple[int, ...]
@@ -64,7 +64,7 @@ class Scale:
     seed_iterations: int
     """Independent renders for a variance, and the iterations of each."""
     reference_iterations: int
-    """Of the picture that errors are measured against, and four times as many as of the longest render."""
+    """Iterations of the picture that errors are measured against, four times as many as of the longest render."""
 
 
 HARDWARE = Scale(

@@ -96,7 +96,7 @@ class Subject:
 
     @cached_property
     def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What build_nodes gives for the triangles."""
+        """Arrays that build_nodes gives for the triangles."""
         return build_nodes(self.host_triangles)
 
     @cached_property
@@ -152,7 +152,7 @@ class Subject:
         return seconds, differences
 
     def traced_by(self, cubemap: DeepCubemap) -> Callable:
-        """What trace_times takes, of a cubemap."""
+        """Return the function that trace_times takes, for a cubemap."""
 
         def trace(rays, hits, count):
             if self._listed.most != count:

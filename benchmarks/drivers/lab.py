@@ -51,7 +51,7 @@ class Driver:
     waves: int = 0
     """The most that a program can have."""
     is_newest: bool = False
-    """Of Debian's development release, in the chroot of the window tests; else the project's own Mesa."""
+    """Whether Mesa is Debian's development release, in the chroot of the window tests; else it is the project's own."""
 
 
 def _amd(device: str, waves: int, words: str, compiler: str = "aco", is_newest: bool = False) -> Driver:
@@ -106,20 +106,20 @@ class Row:
     """A program on a driver."""
 
     seconds: float
-    """Of the processor."""
+    """Processor time of the compilation, seconds."""
     statistics: Statistics | None
     error: str = ""
-    """What is wrong; empty where the program is sound."""
+    """Error; empty where the program is sound."""
 
 
 @dataclass
 class Outcome:
-    """What a driver has made of the programs."""
+    """Outcome of a driver's compilation of the programs."""
 
     device: str
     version: str
     limits: dict[str, int]
-    """Of OpenGL, by their names."""
+    """Limits of OpenGL, by their names."""
     rows: dict[str, Row] = field(default_factory=dict)
     """By the programs' digests."""
 

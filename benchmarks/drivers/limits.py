@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What programs may need of a processor: spills nothing and leaves room for enough waves, or no more than is kept."""
+"""Limits of programs on a processor: no spills and room for enough waves, or no more than is kept."""
 
 import json
 import math
@@ -11,7 +11,7 @@ from .statistics import Statistics
 
 FILE = Path(__file__).resolve().parent / "limits.json"
 _LEAST = 0.25
-"""Of a processor's waves: fewer hide no latency of memory."""
+"""Least fraction of a processor's waves: fewer hide no latency of memory."""
 _SLACK = 1.1
 """Other versions of a program that spills anyway spill a little more or less."""
 
@@ -23,15 +23,15 @@ def is_light(code: Statistics, most_waves: int) -> bool:
 
 @dataclass
 class Limits:
-    """Those of heavy programs by the names of program and driver."""
+    """Limits of heavy programs by the names of program and driver."""
 
     versions: dict[str, str] = field(default_factory=dict)
-    """Of each driver: another makes other code, with which they say nothing."""
+    """Version of each driver: another version makes other code, for which the limits say nothing."""
     heavy: dict[str, dict[str, Statistics]] = field(default_factory=dict)
 
     @classmethod
     def load(cls, file: Path = FILE) -> "Limits":
-        """Those that are kept."""
+        """Load the limits that are kept."""
         found = json.loads(file.read_text(encoding="utf-8"))
         heavy = {
             program: {driver: Statistics(**code) for driver, code in drivers.items()}
@@ -52,7 +52,7 @@ class Limits:
         file.write_text(text, encoding="utf-8")
 
     def complaint(self, program: str, driver: str, code: Statistics, most_waves: int) -> str:
-        """What is worse than it may be; empty where nothing is."""
+        """Return in what way the code is worse than it may be; empty where nothing is."""
         if is_light(code, most_waves):
             return ""
         kept = self.heavy.get(program, {}).get(driver)

@@ -20,7 +20,7 @@ class Program:
 
     @property
     def texts(self) -> dict[str, str]:
-        """What the driver gets."""
+        """Texts that the driver gets, by stage."""
         return {stage: source.text for stage, source in self.stages.items()}
 
     @property
@@ -41,7 +41,7 @@ def all_programs() -> list[Program]:
 
 
 def _words(defines: Mapping[str, object]) -> list[str]:
-    """What tells variants of a file apart: the names of defines, and of files that they include the folder."""
+    """List what tells variants of a file apart: names of defines or, where these name a file to include, its folder."""
     return [
         PurePosixPath(str(value)).parent.name if "/" in str(value) else name for name, value in sorted(defines.items())
     ]

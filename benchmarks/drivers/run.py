@@ -45,7 +45,7 @@ def _load(file: Path) -> Outcome | None:
 
 
 def outcome_of(driver: Driver, programs: list[Program], anew: bool) -> tuple[Outcome, int]:
-    """What a driver makes of the programs, by their digests, and how many it has just compiled. Raises LabError."""
+    """Return a driver's outcome for the programs, by digest, and how many it has just compiled. Raises LabError."""
     file = _kept_file(driver)
     kept = None if anew else _load(file)
     rows = kept.rows if kept else {}
@@ -61,7 +61,7 @@ def outcome_of(driver: Driver, programs: list[Program], anew: bool) -> tuple[Out
 
 
 def _check(driver: Driver, programs: list[Program], outcome: Outcome, limits: Limits | None) -> list[str]:
-    """What is wrong; without limits, what is wrong whatever they are."""
+    """List what is wrong; without limits, what is wrong whatever they are."""
     complaints = []
     for program in programs:
         row = outcome.rows[program.digest]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What drivers print about the code that they have made of a program."""
+"""Statistics that drivers print about the code that they have made of a program."""
 
 import re
 from collections.abc import Callable, Iterable
@@ -8,18 +8,18 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Statistics:
-    """Of a program, that is of the worst of its stages."""
+    """Statistics of a program, that is of the worst of its stages."""
 
     registers: int
-    """Of a thread; 0 where the driver does not tell."""
+    """Registers of a thread; 0 where the driver does not tell."""
     spills: int
     """Registers kept in memory, or, where the driver counts these, the reads and writes of such."""
     waves: int
-    """That a processor of the device has room for at a time; of Intel, how many of our threads make one."""
+    """Waves that a processor of the device has room for at a time; of Intel, how many of our threads make one."""
 
 
 def worst(stages: Iterable[Statistics]) -> Statistics | None:
-    """Of the stages of a program, or of none."""
+    """Return the worst statistics of the stages of a program; None where there are no stages."""
     found = list(stages)
     if not found:
         return None
@@ -36,7 +36,7 @@ def _reader(pattern: str, convert: Callable[..., Statistics]) -> Callable[[str],
 
 
 def _maxwell(local: int, registers: int) -> Statistics:
-    """Of 65,536 registers of a multiprocessor, 256 at a time, for 64 warps of 32 at most."""
+    """Return statistics for 65,536 registers of a multiprocessor, taken 256 at a time, for 64 warps of 32 at most."""
     return Statistics(registers, local // 4, min(64, 65536 // (-(-32 * registers // 256) * 256)))
 
 

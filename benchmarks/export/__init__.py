@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a frame costs in which everything moves."""
+"""Cost of a frame in which everything moves."""

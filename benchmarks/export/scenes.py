@@ -90,7 +90,7 @@ def shape_key(triangles: int) -> None:
 
 
 def _piece() -> bpy.types.Mesh:
-    """What is placed many times: a cube with a UV map and a material."""
+    """Return the mesh that is placed many times: a cube with a UV map and a material."""
     bpy.ops.mesh.primitive_cube_add(size=0.1)
     cube = bpy.context.object
     mesh = cube.data

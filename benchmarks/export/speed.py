@@ -119,7 +119,7 @@ def finish_evaluation(depsgraph: bpy.types.Depsgraph) -> None:
 
 
 class Transfer:
-    """What goes from Blender's process to the renderer's, both ends in this one."""
+    """Transfer of scenes from Blender's process to the renderer's, both ends in this one."""
 
     def __init__(self, watch: Stopwatch) -> None:
         self._watch = watch

@@ -165,7 +165,7 @@ class Counts:
 
 @dataclass(frozen=True)
 class Scene:
-    """What is to be rendered."""
+    """Scene to be rendered."""
 
     name: str
     title: str

@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build" / "peers"
 """A folder a renderer."""
 OUT = ROOT / "out" / "peers"
-"""What is made and measured."""
+"""Folder of everything that is made and measured."""
 
 LOCKED = ("luxcore", "mitsuba")
 """Adapters with an environment of their own, of the locked packages of that name; the others run in the project's,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What an adapter is asked for and what it answers, as JSON and .npy files. NumPy only."""
+"""Jobs that an adapter is given and its answers, as JSON and .npy files. NumPy only."""
 
 import argparse
 import dataclasses
@@ -30,7 +30,7 @@ class Job:
     source: str = ""
     """The file of the scene, for renderers that read one."""
     options: dict[str, object] = field(default_factory=dict)
-    """What makes the method, in the adapter's words."""
+    """Options that make the method, in the adapter's words."""
     seconds: list[float] = field(default_factory=list)
     """Ascending times of rendering after which pictures are wanted."""
     samples: list[int] = field(default_factory=list)
@@ -55,7 +55,7 @@ class Picture:
     mark: float
     """The seconds or samples asked for."""
     seconds: float
-    """What it took, from the scene in the renderer's format to the picture."""
+    """Time that it took, from the scene in the renderer's format to the picture."""
     samples: float
     """A pixel, or iterations; 0 where the renderer does not tell."""
     file: str
@@ -67,7 +67,7 @@ class Picture:
 
 @dataclass
 class Answer:
-    """What became of a job."""
+    """Outcome of a job."""
 
     version: str = ""
     first_picture_seconds: float = 0.0

@@ -14,7 +14,7 @@ class Method:
     """The module below adapters/ and the environment it runs in."""
     options: dict[str, object] = field(default_factory=dict)
     why: str = ""
-    """What it is good for, in a few words."""
+    """Purpose that the method is good for, in a few words."""
     leaves_out: tuple[str, ...] = ()
     """Scenes that it cannot be given as they are."""
 

@@ -34,7 +34,7 @@ def caustic_mask(reference: np.ndarray, without: np.ndarray) -> np.ndarray:
 
 
 def caustic_ratio(picture: np.ndarray, reference: np.ndarray, without: np.ndarray) -> float:
-    """What caustics add within their mask, over what they add in the reference: 0 where there are none."""
+    """Return what caustics add within their mask, over what they add in the reference: 0 where there are none."""
     mask = caustic_mask(reference, without)
     base = without[mask].mean(dtype=np.float64)
     return float((np.nanmean(picture[mask], dtype=np.float64) - base) / (reference[mask].mean(dtype=np.float64) - base))

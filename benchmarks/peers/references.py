@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the pictures are compared with: long runs of two independent methods, and how well these agree.
+"""References that the pictures are compared with: long runs of two independent methods, and how well these agree.
 
 Each method renders twice with different seeds. The difference of its two halves tells its noise; the reference is the
 mean of both methods, weighted by the inverse of their noise. Where methods differ by more than their noise, one of
@@ -41,7 +41,7 @@ class Agreement:
     mean_ratio: float
     """Mean radiance of the first over that of the second."""
     seconds: float
-    """That each rendered."""
+    """Time that each method rendered, seconds."""
 
     @property
     def floor(self) -> float:
@@ -51,7 +51,7 @@ class Agreement:
 
 @dataclass
 class Reference:
-    """What a scene's pictures are compared with; (H, W, 3) each."""
+    """Reference pictures that a scene's pictures are compared with; (H, W, 3) each."""
 
     pixels: np.ndarray
     without_caustics: np.ndarray | None

@@ -78,7 +78,7 @@ def _ratio(value: float) -> str:
 
 
 def scene_words(scene: SceneResult) -> str:
-    """What the scene is and how good its reference."""
+    """Describe the scene and how good its reference is."""
     agreement = scene.agreement
     first, second = (METHODS[name].label for name in agreement.methods)
     words = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was measured, as JSON keeps it."""
+"""Results of measurements, as JSON keeps them."""
 
 import dataclasses
 import json

@@ -96,7 +96,7 @@ def curve_of(method: Method, answer: Answer, reference: Reference, exposure: flo
 
 
 def describe_machine() -> dict[str, object]:
-    """What the comparison ran on, and how busy that was before."""
+    """Describe the machine that the comparison ran on, and how busy it was before."""
     return {
         "processor": processor_name(),
         "cores": usable_cores(),

@@ -29,7 +29,7 @@ _COMMENT = re.compile(r"//[^\n]*")
 
 @dataclass(frozen=True)
 class Site:
-    """What a counter counts."""
+    """Invocations or memory accesses that a counter counts."""
 
     kind: str
     """invocations, read, write, atomic (of an array's item) or counter (an atomic of a single word)."""

@@ -63,7 +63,7 @@ class KernelTimes:
 
 
 def comparison(device: str, pixels: int, stored: Mapping[str, Demand], seconds: Mapping[str, float]) -> str:
-    """What was predicted and what was measured, the longest first."""
+    """Return a table of predicted and measured times, the longest first."""
     gpu = next((gpu for gpu in GPUS if gpu.part_of_name in device), None)
     lines = [
         f"{device}, {pixels} pixels, {pixels // 4} photons; the floor is that of {(gpu or RTX_2080_TI).name}",

@@ -11,7 +11,7 @@ from .recorder import Asked
 
 @dataclass(frozen=True)
 class Gpu:
-    """What a device's maker says of it."""
+    """Properties of a device, as its maker states them."""
 
     name: str
     part_of_name: str
@@ -21,11 +21,11 @@ class Gpu:
     """Hz."""
     processors: int
     waves: int
-    """That a processor has room for."""
+    """Waves that a processor has room for."""
     width: int
     """Threads of a wave."""
     driver: str
-    """Of benchmarks/drivers, whose compiler stands for the device's."""
+    """Driver of benchmarks/drivers whose compiler stands for the device's."""
 
 
 RTX_2080_TI = Gpu("GeForce RTX 2080 Ti", "RTX 2080 Ti", 616e9, 1.545e9, 68, 32, 32, "gm204 nouveau")
@@ -57,7 +57,7 @@ class Line:
 
 @dataclass
 class Demand:
-    """Of one program in an iteration, by the number of pixels; there are four pixels to a photon."""
+    """Demand of one program in an iteration, by the number of pixels; there are four pixels to a photon."""
 
     runs: float
     threads: Line = field(default_factory=Line)
@@ -67,7 +67,7 @@ class Demand:
     least: Line = field(default_factory=Line)
     """Bytes with caches that lose nothing: no block is read or written more than once as a whole."""
     atomics: Line = field(default_factory=Line)
-    """Of items of arrays."""
+    """Atomics of items of arrays."""
     counters: Line = field(default_factory=Line)
     """Atomics of single words, which wait for each other."""
 

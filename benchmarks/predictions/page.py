@@ -19,9 +19,9 @@ _SHORTEST = 0.0005
 
 
 def statistics_of(gpu: Gpu) -> dict[str, Statistics]:
-    """What the driver that stands for a device makes of a program, by the file of its last stage.
+    """Return statistics of programs by the driver that stands for a device, by the file of each program's last stage.
 
-    Of a program with several variants that is the heaviest. Raises LabError.
+    A program with several variants has those of the heaviest. Raises LabError.
     """
     (driver,) = (driver for driver in DRIVERS if driver.name == gpu.driver)
     prepare([driver])

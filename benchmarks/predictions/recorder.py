@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the programs of an iteration ask of memory, counted by themselves while they run."""
+"""Memory accesses of the programs of an iteration, counted by the programs themselves while they run."""
 
 import ctypes
 from collections.abc import Iterator
@@ -20,11 +20,11 @@ _TEXTURE_BUFFER, _READ_WRITE, _R32UI = 0x8C2A, 0x88BA, 0x8236
 
 @dataclass
 class Asked:
-    """Of one program in some iterations."""
+    """Counts of what one program asked for in some iterations."""
 
     runs: int = 0
     invocations: int = 0
-    """Of its heaviest stage."""
+    """Invocations of the program's heaviest stage."""
     asked: dict[Site, int] = field(default_factory=dict)
     """How often, by what was asked."""
     sizes: dict[str, int] = field(default_factory=dict)

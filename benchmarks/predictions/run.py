@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every program of an iteration is bound to cost: ``python -m benchmarks.predictions.run``.
+"""Predicted cost of every program of an iteration: ``python -m benchmarks.predictions.run``.
 
 Without options programs count on this machine what they ask of memory, at two sizes of the picture, and the
 page docs/benchmarks/predictions.md is written. --measure times them on the device that there is and prints both.
@@ -26,7 +26,7 @@ from .recorder import Recorder
 
 FILE = Path(__file__).resolve().parent / "demands.json"
 PIXELS = 1 << 20
-"""Of the paper, with 262,144 photons."""
+"""Number of pixels in the paper, with 262,144 photons."""
 SIZES, ITERATIONS = (64, 160), 2
 ROUTES = (DensityEstimation.RASTERIZED, DensityEstimation.GRID)
 

@@ -68,7 +68,7 @@ class RecordingLayout:
 
 
 def context_of(scene, **members):
-    """What panels ask of a context of the Properties editor."""
+    """Return a context of the Properties editor with the members that panels ask for."""
     nothing = dict.fromkeys(("light", "camera", "material", "world", "object"))
     return SimpleNamespace(
         **{
@@ -84,7 +84,7 @@ def context_of(scene, **members):
 
 
 def drawn(cls, context):
-    """What a panel (or preferences, or another class with draw) shows."""
+    """Draw a panel (or preferences, or another class with draw) and return the record of what it shows."""
     panel = cls(bpy.data.scenes[0])  # an instance needs some RNA; which does not matter
     panel.layout = RecordingLayout()
     for name in ("draw_header", "draw_header_preset"):

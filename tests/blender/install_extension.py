@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user does with the zip, in a Blender of its own: install it, then start again and render with it.
+"""Do what a user does with the zip, in a Blender of its own: install it, then start again and render with it.
 
 Run as ``python install_extension.py install ZIP``, then ``... render PICTURE``, with BLENDER_USER_RESOURCES set to
 the same folder, empty at first; prints JSON.

@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MANIFEST = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
 OF_OTHER_PROCESSES = ("rppm_addon/session/process/bootstrap.py", "rppm_addon/self_test/run.py")
 RUNTIME = {"bpy", "gpu", "mathutils", "moderngl", "numpy", "OpenEXR"}
-"""What the extension may import beside Python's own library."""
+"""Modules that the extension may import beside Python's own library."""
 BLENDERS = {"bl_operators", "bl_ui", "bpy_extras", "gpu_extras"}
 """Modules that Blender brings beside its API."""
 
@@ -156,7 +156,7 @@ def read(picture):
 
 
 def as_user(folder, *arguments):
-    """What install_extension.py reports, in a Blender whose user folder is ``folder``/user."""
+    """Return the report of install_extension.py, in a Blender whose user folder is ``folder``/user."""
     run = subprocess.run(
         [sys.executable, Path(__file__).with_name("install_extension.py"), *arguments],
         env=os.environ | {"BLENDER_USER_RESOURCES": str(folder / "user")},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What register adds to Blender, what unregister leaves behind, and the extension's outside."""
+"""Registration: what register adds to Blender, what unregister leaves behind, and the extension's outside."""
 
 import importlib.util
 import subprocess

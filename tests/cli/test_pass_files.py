@@ -28,7 +28,7 @@ def scene_file(tmp_path):
 
 
 def check(picture, scene):
-    """What the file of a picture tells."""
+    """Check the contents of a picture's file."""
     assert {"Mask.X", *(f"Tint.{letter}" for letter in "RGBA"), "CryptoObject00.r"} < picture.channels.keys()
     pairs = picture.layer("CryptoObject00")[:, :7]
     assert (np.ascontiguousarray(pairs[..., 0]).view(np.uint32) == identifiers_of(["Floor"])).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `pip install .` installs: the program renders without the checkout."""
+"""Installation by `pip install .`: the program renders without the checkout."""
 
 import importlib.metadata
 import os

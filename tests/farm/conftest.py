@@ -17,7 +17,7 @@ TIMEOUT_SECONDS = 60.0
 
 
 def wait_for(what, condition):
-    """What ``condition()`` gives once it is true; fails after a minute."""
+    """Return the value of ``condition()`` once it is true; fail after a minute."""
     give_up = time.monotonic() + TIMEOUT_SECONDS
     while time.monotonic() < give_up:
         found = condition()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a farm hands out, and how it knows what is done."""
+"""Tasks that a farm hands out, and how it knows which are done."""
 
 import dataclasses
 import json

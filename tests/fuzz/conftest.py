@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is told of a run."""
+"""Summary of a run."""
 
 import os
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is expected of every way in: what is given is taken, or refused by the error that the way promises."""
+"""Expectations of every way in: input is taken, or refused by the error that the way promises."""
 
 import contextlib
 import functools
@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 import hypothesis
 
 EXAMPLES = int(os.environ.get("RPPM_FUZZ_EXAMPLES", "0"))
-"""Of each way; 0 is a few, always the same, as in the tests."""
+"""Number of examples of each way in; 0 is a few, always the same, as in the tests."""
 _settings = hypothesis.settings(
     **({"max_examples": EXAMPLES} if EXAMPLES else {"max_examples": 40, "derandomize": True, "database": None}),
     deadline=None,  # which would count what other processes take

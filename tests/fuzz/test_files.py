@@ -53,7 +53,7 @@ def converted(number, dtype):
 
 
 def looks_right(scene):
-    """What renderers rely on, said again in other words than the gate's."""
+    """Check the properties that renderers rely on, said again in other words than the gate's."""
     for mesh in scene.meshes:
         corners = mesh.corner_vertices[mesh.triangle_corners]  # raises for those that are beyond
         assert not mesh.triangle_corners.size or mesh.triangle_corners.min() >= 0

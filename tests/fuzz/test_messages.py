@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the renderer's process may say to Blender, and what a farm may hand to its workers."""
+"""Messages that the renderer's process may send to Blender, and that a farm may hand to its workers."""
 
 import dataclasses
 import io

@@ -87,5 +87,5 @@ def damaged_bytes(draw: Any, data: bytes) -> bytes:
 
 
 def as_json(value: Any) -> Any:
-    """What a value is after it went through a pipe or a file."""
+    """Return the value as it is after it went through a pipe or a file."""
     return json.loads(json.dumps(value))

@@ -14,7 +14,7 @@ from rppm_addon.scene.meshes import RayVisibility
 
 FLOOR, BLACK, GRAY = np.array([0.9, 0.7, 0.5]), np.zeros(3), np.full(3, 0.6)
 HEIGHT, HALF, HOLE = 1.0, 1.0, 0.25
-"""Of the room, half of its width, and half of that of the square hole in its ceiling, meters."""
+"""Height of the room, half of its width, and half of the width of the square hole in its ceiling, meters."""
 
 
 def room(walls: np.ndarray, hole: float = HOLE, **settings: object) -> Scene:
@@ -53,7 +53,7 @@ def hole_form_factor(scene: Scene) -> np.ndarray:
     place = matrix[:3, 3] - rays * (matrix[2, 3] / rays[..., 2])[..., None]
 
     def corner(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Of a rectangle from above the place to (u, v) off it."""
+        """Return the form factor of a rectangle from above the place to (u, v) off it."""
         s, t = u / np.hypot(HEIGHT, u), v / np.hypot(HEIGHT, v)
         return (s * np.arctan(v / np.hypot(HEIGHT, u)) + t * np.arctan(u / np.hypot(HEIGHT, v))) / (2 * math.pi)
 

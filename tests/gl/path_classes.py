@@ -32,7 +32,7 @@ FLOOR = Plane(np.zeros(3), UP)
 WALL = Plane(np.array([1.2, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
 FLOOR_AXES, WALL_AXES = np.eye(3)[:2], np.eye(3)[1:]
 NARROW, WIDE = 0, 1
-"""Of ProgressivePhotonMapper.splat_radii."""
+"""Indices into ProgressivePhotonMapper.splat_radii."""
 
 
 @dataclass

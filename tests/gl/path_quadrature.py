@@ -100,7 +100,7 @@ class Spot:
     intensity: float
     """W/sr on the axis."""
     cosine: float
-    """Of half the cone's angle."""
+    """Cosine of half the cone's angle."""
     radius: float
 
     @classmethod

@@ -38,7 +38,7 @@ class BlenderWindow:
         self.wait_until("ready", 120.0)
 
     def log(self) -> str:
-        """What Blender has printed."""
+        """Return the text that Blender has printed."""
         return (self.machine.folder / "blender.log").read_text(errors="replace")
 
     def step(self, step: str, seconds: float = 30.0, /, **arguments: Any) -> Any:

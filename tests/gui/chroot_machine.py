@@ -89,7 +89,7 @@ class ChrootMachine:
         return self._ask("shared_memory")["names"]
 
     def resources(self, *folders: str) -> dict[str, dict]:
-        """What each active process holds, by its number, and the bytes of the files in folders, by their paths."""
+        """Return the resources of each active process, by its number, and the bytes of files in folders, by path."""
         return self._ask("resources", folders=list(folders))
 
     def busy_share(self, pid: int, seconds: float) -> float:

@@ -22,7 +22,7 @@ CANNOT_BUILD = 77
 PICTURES = ROOT / "out" / "gui"
 """Where logs and screenshots stay, to be looked at."""
 CACHES = ("home/.cache", "programs")
-"""Of a session's folder: what the driver and RPPM compiled."""
+"""Subfolders of a session's folder with what the driver and RPPM compiled."""
 
 
 @pytest.fixture(scope="session")
@@ -74,7 +74,7 @@ def take_caches(chroot: Path, folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def session_folder(chroot, archive, tmp_path_factory) -> Path:
-    """What the Blenders of all tests see as /mnt: the extension is installed, caches are filled by the first."""
+    """Folder that the Blenders of all tests see as /mnt: the extension is installed, caches are filled by the first."""
     folder = tmp_path_factory.mktemp("gui")
     for name in ("home", "user", "programs"):
         (folder / name).mkdir()

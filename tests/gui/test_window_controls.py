@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What users do with a render and a viewport beside looking: pause and go on, and light the scene otherwise."""
+"""Controls of a render and a viewport: users pause it and go on, and light the scene otherwise."""
 
 import time
 

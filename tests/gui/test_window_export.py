@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a window does while a large file is exported for a rendered viewport: it goes on."""
+"""A window goes on while a large file is exported for a rendered viewport."""
 
 import os
 import shutil

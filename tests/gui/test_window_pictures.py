@@ -7,7 +7,7 @@ import pytest
 from viewport_window import wait_for_rest
 
 SECONDS = 400.0
-"""That the sample may take on a busy machine."""
+"""Time that the sample may take on a busy machine, seconds."""
 SAMPLES = 12
 
 

@@ -8,7 +8,7 @@ ALONE = ["Gold Band", "Lamp", "Floor"]
 
 
 def shown(blender, name):
-    """What the two viewports show, both of one size."""
+    """Return the pictures of the two viewports, both of one size."""
     screen = blender.screenshot(name)
     rectangles = blender.step("viewport_rectangles")
     width = min(width for _, _, width, _ in rectangles)

@@ -10,11 +10,11 @@ from blender_window import BlenderWindow, StepError, read_png
 SIZE, WIDE = (320, 180), (480, 270)
 """Pixels of the viewport, about; and where two share them, or what it costs to show them is measured."""
 ITERATIONS, PHOTONS = 4, 16384
-"""Of the viewport and of final renders."""
+"""Iterations and photons of the viewport and of final renders."""
 BORDER = 8
 """Pixels at the edges of the viewport where Blender draws its rounded frame."""
 IDLE_SHARE = 0.1
-"""Of moments at which the renderer process runs, below which it is at rest: it answers pings."""
+"""Share of moments at which the renderer process runs, below which it is at rest: it answers pings."""
 REST_LOOKS, LOOK_SECONDS = 5, 0.3
 """How often in a row it is looked at, and for how long each time, until it is believed to be at rest."""
 

@@ -35,7 +35,7 @@ TEMPORARY, KEPT = ("/dev/shm", "/tmp", "/var/tmp", "/run"), ("/mnt/user", "/mnt/
 
 
 def pixels(path: Path) -> np.ndarray:
-    """Of all channels, (height, width, channels)."""
+    """Read all channels of a picture, (height, width, channels)."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return np.dstack([channel.pixels for _, channel in sorted(file.channels().items())])
 
@@ -48,7 +48,7 @@ class Soak:
         self.folder = blender.machine.folder
         self.counts = dict.fromkeys(("frames", "animations", "stopped", "repeated", "compared", "mismatches"), 0)
         self._sums: dict[tuple[int, int], str] = {}
-        """Of the first picture of each state and frame."""
+        """Checksum of the first picture of each state and frame."""
         self._started = time.monotonic()
 
     @property
@@ -103,7 +103,7 @@ class Soak:
         path.rename(FOLDER / f"last_{state}_{frame}.exr") if self.counts["frames"] <= STATES else path.unlink()
 
     def fresh(self, frame: int) -> np.ndarray:
-        """What another Blender renders of the file as it is now."""
+        """Return the picture that another Blender renders of the file as it is now."""
         self.blender.step("soak_copy", 120.0, path="/mnt/soak/copy.blend")
         command = ["blender", "--background", "--offline-mode", "/mnt/soak/copy.blend"]
         command += ["--render-output", "/mnt/soak/fresh_####", "--render-frame", str(frame)]

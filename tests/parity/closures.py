@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a shader node scatters from a point light to a camera, by Cycles and by the node's closure, pixel by pixel.
+"""Scattering by a shader node from a point light to a camera, by Cycles and by the node's closure, pixel by pixel.
 
 A point light without extent makes Cycles' picture of one sample exact: the sum of the BSDFs times cosine and
 irradiance, for as many pairs of directions as there are pixels.

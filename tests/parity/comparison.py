@@ -16,9 +16,9 @@ class Tolerance:
     """Systematic differences allowed on top of noise, as shares of radiance."""
 
     mean: float = 0.015
-    """Of the mean over the region, noise included."""
+    """Difference of the mean over the region, noise included."""
     block: float = 0.03
-    """Of a block's mean, on top of four standard errors."""
+    """Difference of a block's mean, on top of four standard errors."""
     mode: float = 0.01
     """Amplitude of a slow cosine over the picture, on top of three standard errors."""
 

@@ -27,7 +27,7 @@ def pytest_configure(config):
 
 @pytest.fixture(autouse=True, scope="module")
 def reference_file(request):
-    """Of the module. Written, it loses what no test asked for, unless only some of the tests ran or one failed."""
+    """Use the module's reference file. Written, it loses what no test asked for, unless only some ran or one failed."""
     failed = request.session.testsfailed
     references.begin(request.path.relative_to(Path(__file__).parents[2]))
     yield

@@ -32,7 +32,7 @@ SPACING = 3.2
 RADIUS = 1.1
 LABEL = 12
 TILT = np.radians(35.0)
-"""Of the camera above the floor."""
+"""Angle of the camera above the floor, radians."""
 
 
 @dataclass

@@ -16,7 +16,7 @@ from .scenes import render_cycles
 
 
 def shown(net: Net, case: dict) -> bpy.types.NodeSocket:
-    """What a case looks at."""
+    """Return the output of a case's Raycast node that is shown."""
     node = net.node("Raycast", {"Length": case.get("length", 1.0)}, only_local=case.get("only_local", False))
     if case.get("direction") == INCOMING:
         incoming = net.out("NewGeometry", "Incoming")

@@ -23,7 +23,7 @@ SIZE, STEP, ANGLE = 32, 8, 70.0
 CAMERAS = {"above": (0.0, -1.6, 1.2), "below": (0.0, -1.6, -1.2)}
 LIGHTS = {"above": (0.5, 0.6, 0.9), "below": (0.3, 0.4, -0.9)}
 VIEWS = (("above", "above"), ("above", "below"), ("below", "above"))
-"""Of camera and light."""
+"""Sides of camera and light."""
 COLOR, TINT = (0.8, 0.5, 0.2), (0.4, 0.8, 0.9)
 GLASS = {"base_color": COLOR, "transmission_weight": 1.0}
 SHEET = {"base_color": COLOR, "subsurface_weight": 1.0}

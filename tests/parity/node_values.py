@@ -19,7 +19,7 @@ from .scenes import cycles_channels, new_scene, unfilter
 
 RESOLUTION = 48
 CORNERS = [(-2.1, -1.9, 0.3), (2.0, -2.05, 1.9), (2.2, 1.95, -0.4), (-1.9, 2.1, -2.0)]
-"""Of the plane: a single quadrilateral, seen from above, whose heights differ from its other coordinates."""
+"""Corners of the plane: a single quadrilateral, seen from above, whose heights differ from its other coordinates."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ def _pass(channels: dict[str, np.ndarray], name: str) -> np.ndarray:
 def cycles_values(
     cases: Sequence[NodeCase], shift: Sequence[float] = (0.0, 0.0, 0.0)
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, np.ndarray]]]:
-    """What Cycles gives for some twenty cases: vectors (pixels, 3), w (pixels,), and each case's outputs by our names.
+    """Return Cycles' values for some twenty cases: vectors (pixels, 3), w (pixels,), each case's outputs by our names.
 
     More cases in one picture do not fit the stack of Cycles' virtual machine.
     """
@@ -183,7 +183,7 @@ def call_shader(function: str, kind: NodeKind, chosen: int) -> str:
 def our_values(
     library: ProgramLibrary, folder: Path, name: str, kind: NodeKind, case: NodeCase, vector: np.ndarray, w: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """What our GLSL gives for a case, as cycles_values does."""
+    """Return the outputs of our GLSL for a case, as cycles_values returns those of Cycles."""
     function, literals = kind.call(name, case.options)
     path = folder / f"{function}.comp"
     path.write_text(call_shader(function, kind, len(literals)), encoding="utf-8")

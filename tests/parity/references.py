@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Cycles gives for the tests' scenes, kept in tests/parity/references/: a file for each test module.
+"""Cycles' results for the tests' scenes, kept in tests/parity/references/: a file for each test module.
 
 A scene's digest finds what was kept of it, so that a scene that changed is noticed. ``make parity`` renders Cycles'
 side anew and compares it with what is kept; ``make references`` keeps it. Other Blenders than the one that it was
@@ -21,7 +21,7 @@ FOLDER = Path(__file__).parent / "references"
 BLOCK = 8
 """Pixels a side of the blocks whose means are kept exactly, as comparison.py compares them."""
 ROUNDING = 2.0**-22
-"""Of float32, as a share, twice."""
+"""Relative rounding error of float32, twice."""
 SIGMAS = 6.0
 """By which two renders may differ. A block's error is known from two seeds and its neighbors, 18 degrees of freedom in
 all: Student's t beyond 6 has a probability of 1e-5, of 64 blocks in 100 pictures 7 in 100 runs on another processor;
@@ -49,9 +49,9 @@ class ReferenceMissing(AssertionError):
 class _State:
     mode: Mode = Mode.RENDER
     test_file: Path = Path()
-    """Of the running test, from the checkout on; its stem names the file."""
+    """Path of the running test's file, from the checkout on; its stem names the file of references."""
     written: dict[str, np.ndarray] = field(default_factory=dict)
-    """What the module's tests asked for in mode WRITE, by name in the file."""
+    """Arrays that the module's tests asked for in mode WRITE, by name in the file."""
 
 
 _state = _State()

@@ -19,7 +19,7 @@ _ROOMS = (
     "lightprobes", "lights", "materials", "meshes", "metaballs", "movieclips", "node_groups", "objects", "particles",
     "pointclouds", "scenes", "shape_keys", "texts", "textures", "volumes", "worlds",
 )  # fmt: skip
-"""Of bpy.data."""
+"""Collections of bpy.data that the digest covers."""
 _LEFT_OUT = {
     # Of windows and of files.
     "rna_type", "bl_rna", "id_data", "preview", "asset_data", "session_uid", "users", "original", "is_evaluated", "tag",
@@ -40,7 +40,7 @@ _GEOMETRY = {
     "polygon_normals", "corner_normals", "uv_layers", "color_attributes", "vertex_colors", "skin_vertices",
     "sculpt_vertex_colors", "position_data", "points", "curves", "curve_offset_data", "normals", "attributes",
 }  # fmt: skip
-"""Of meshes and the like, whose attributes tell it. Normals of curves differ between processors by more than bits."""
+"""Geometry of meshes and the like, whose attributes tell it. Normals of curves differ across CPUs by more than bits."""
 _WITH_ATTRIBUTES = (bpy.types.Mesh, bpy.types.Curves, bpy.types.PointCloud)
 _VALUES = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
@@ -54,13 +54,13 @@ _COORDINATES = ("MeshUVLoop", "Float2AttributeValue")
 
 @functools.lru_cache(maxsize=1 << 16)
 def _few_bits(value: float) -> bytes:
-    """Of one number, as _Digest.numbers has them of an array."""
+    """Return one number without its last 8 bits, as _Digest.numbers has those of an array."""
     (bits,) = np.float32([0.0 if abs(np.float32(value)) < np.float32(1e-6) else value]).view(np.uint32)
     return (((int(bits) + 0x4B) >> 8) & 0xFFFFFFFF).to_bytes(4, sys.byteorder)
 
 
 def _few_bits_of(values: object) -> np.ndarray:
-    """Of an array, flat, uint32."""
+    """Return the numbers of an array without their last 8 bits, flat, uint32."""
     bits = np.ascontiguousarray(values, np.float32).ravel()
     bits = np.where(np.abs(bits) < 1e-6, np.float32(0.0), bits).view(np.uint32)
     return ((bits.astype(np.uint64) + 0x4B) >> 8).astype(np.uint32)
@@ -136,7 +136,7 @@ class _Digest:
         self.inside.remove(pointer)
 
     def coordinates(self, items: bpy.types.bpy_prop_collection) -> bool:
-        """What struct() would tell of all items of a UV map one by one, at once; False, and nothing, of others."""
+        """Hash all items of a UV map at once, as struct() does one by one; return False, without a hash, for others."""
         kind = type(items[0]).__name__ if len(items) else ""
         if kind not in _COORDINATES:
             return False
@@ -168,7 +168,7 @@ class _Digest:
             self.text(value)
 
     def geometry(self, data: bpy.types.ID) -> None:
-        """Of a mesh, point cloud or curves; the order of edges, which changes from run to run, is left out."""
+        """Hash a mesh, point cloud or curves; the order of edges, which changes from run to run, is left out."""
         for attribute in sorted(data.attributes, key=lambda attribute: attribute.name):
             if attribute.name.startswith(".") or attribute.domain == "EDGE":
                 continue
@@ -203,7 +203,7 @@ class _Digest:
 
 
 def scene_digest() -> str:
-    """Of the current scene and this Blender, in hexadecimal."""
+    """Return the digest of the current scene and this Blender, in hexadecimal."""
     digest = _Digest()
     digest.text(bpy.app.version_string, bpy.context.scene.name)
     with warnings.catch_warnings():

@@ -231,7 +231,7 @@ def unfilter() -> None:
 
 
 def cycles_channels(samples: int = 1) -> dict[str, np.ndarray]:
-    """What Cycles gives for the view layer, by pass and channel ("Depth.Z"): (H, W) float32, row 0 at the bottom."""
+    """Return Cycles' view layer by pass and channel ("Depth.Z"): (H, W) float32, row 0 at the bottom."""
     scene = bpy.context.scene
     scene.render.engine, scene.cycles.samples = "CYCLES", samples
     return _render_channels()
@@ -274,7 +274,7 @@ class Rendered:
     pictures: np.ndarray
     """(seeds, height, width, 3) float64, row 0 at the bottom."""
     statistics: RenderStatistics
-    """Of the last seed."""
+    """Statistics of the last seed's render."""
 
 
 def render_rppm(renderer: Renderer, seeds: int = 3, **settings: object) -> Rendered:

@@ -107,7 +107,7 @@ def test_colors_are_those_of_cycles():
 
 @pytest.mark.parametrize("view", ["ABOVE_SURFACE", "ACTIVE_CAMERA"])
 def test_direct_light_is_that_of_cycles(view):
-    """What varnish shows of the light depends on from where it is seen."""
+    """The light that varnish reflects depends on the direction from which it is seen."""
     scene, _, crate = room()
     camera((0.0, -3.0, 1.0), (0.0, 0.0, 0.0))
     scene.render.bake.view_from = view

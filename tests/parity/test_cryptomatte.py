@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What objects, materials and assets cover, beside Cycles."""
+"""Cryptomatte coverage of objects, materials and assets, compared with Cycles."""
 
 import bpy
 import numpy as np

@@ -31,7 +31,7 @@ CLOSE = Tolerance(mean=0.03, block=0.06, mode=0.03)
 
 
 def surfaces(resolution: int) -> None:
-    """Of all kinds: a diffuse floor, glossy and varnished balls, one of glass, a translucent sheet, a rough pane."""
+    """Build surfaces of all kinds: diffuse floor, glossy, varnished and glass balls, translucent sheet, rough pane."""
     scene = new_scene(resolution, world=0.4)
     plane(1.5, material(DIFFUSE, Color=(0.7, 0.5, 0.3)), place(at=(0.0, 0.0, -0.5)))
     ball(0.35, material(PRINCIPLED, Base_Color=(0.2, 0.5, 0.8), Roughness=0.4), place(at=(-0.7, 0.0, -0.1)))

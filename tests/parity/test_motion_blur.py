@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves while the shutter is open, against Cycles.
+"""Motion while the shutter is open, compared with Cycles.
 
 Cycles' table of times ends at 255/256 of the shutter's time, so that what moves through the picture lies up to a tenth
 of a pixel behind; all scenes have some light in all of the picture, beside which that is little.

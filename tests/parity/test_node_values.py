@@ -82,7 +82,7 @@ vec3 direction_to_world(Surface surface, vec3 d) {{ return mat3(TO_WORLD) * d; }
 vec3 normal_to_world(Surface surface, vec3 n) {{ return n * mat3(TO_OBJECT); }}
 vec3 normal_to_object(Surface surface, vec3 n) {{ return n * mat3(TO_WORLD); }}
 """
-"""What nodes ask of shaders/materials/surface.glsl, for the samples of value_grids."""
+"""GLSL declarations that nodes need of shaders/materials/surface.glsl, for the samples of value_grids."""
 
 
 def choices(*lists: np.ndarray) -> list[np.ndarray]:

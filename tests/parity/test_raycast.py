@@ -24,7 +24,7 @@ def scaled(graph: NodeGraph, value: Link, scale: float, offset: object) -> Link:
 
 
 def graph_of(case: dict) -> NodeGraph:
-    """What the exporter makes of the case's nodes."""
+    """Return the node graph that the exporter makes of the case's nodes."""
     graph, inputs = NodeGraph(), {"length": case.get("length", 1.0)}
     if case.get("direction") == INCOMING:
         inputs["direction"] = scaled(graph, graph.add("new_geometry", "incoming"), -1.7, (0.0,) * 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is kept of Cycles' side: exact where tests compare, found by the scene alone, and checked against Cycles."""
+"""References of Cycles' side: exact where tests compare, found by the scene alone, and checked against Cycles."""
 
 import bpy
 import numpy as np

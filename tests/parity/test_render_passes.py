@@ -83,7 +83,7 @@ def test_every_pass_of_blender_is_that_of_cycles(renderer, surfaces):
 
 
 def test_aovs_are_those_of_cycles(renderer, surfaces):
-    """Of nodes and of sockets; what is seen in the mirror does not count."""
+    """AOVs of nodes and of sockets are compared; surfaces that are seen in the mirror do not count."""
     for thing in surfaces.objects:
         if thing.type != "MESH":
             continue
@@ -112,7 +112,7 @@ def test_aovs_are_those_of_cycles(renderer, surfaces):
 
 
 def test_shadows_on_catchers_are_those_of_cycles(renderer):
-    """Of a black ball, as light from other surfaces is left out."""
+    """The ball is black, as light from other surfaces is left out."""
     scene = new_scene(resolution=32, world=0.0)
     plane(3.0, material(DIFFUSE)).is_shadow_catcher = True
     ball(0.5, material(DIFFUSE, Color=0.0), place(at=(0.0, 0.0, 0.6)))

@@ -28,7 +28,7 @@ TILES = [
 
 
 def _material(kind: str, output: str, properties: dict, inputs: dict) -> bpy.types.Material:
-    """What the texture gives, as light."""
+    """Return a material that emits the texture's output as light."""
     made = bpy.data.materials.new(kind)
     if made.node_tree is None:
         made.use_nodes = True

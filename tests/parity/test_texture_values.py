@@ -15,7 +15,7 @@ from .node_values import NodeCase, cycles_values, our_name, our_values
 TOLERANCE = 1e-4
 """Absolute, or relative to values above 1: rounding of coordinates, magnified by the octaves."""
 FLIPPED_SHARE = 0.005
-"""Of the pixels, those that may lie so near a border between cells that rounding puts them on the other side."""
+"""Share of the pixels that may lie so near a border between cells that rounding puts them on the other side."""
 AT_ONCE = 20
 PERIODIC = {("tex_gabor", "phase")}
 """Outputs where 0 and 1 are the same."""

@@ -22,7 +22,7 @@ EXACT, TABLES = 0.006, 0.016
 FILM = 0.08
 """As there: one angle stands for all microfacets, and Gaussians for the eye's sensitivities."""
 NOISE = 0.002
-"""Of shares, by 4096 samples of each pixel, which choose what is reflected."""
+"""Noise of shares, by 4096 samples of each pixel, which choose what is reflected."""
 Record("SheetTestParameters", count="uint", seen_by_camera="uint", below="uint", unused="uint")
 
 _SHADER = """#version 430 core

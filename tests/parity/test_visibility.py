@@ -110,7 +110,7 @@ def test_emission_that_varies_over_a_mesh(renderer, mode):
 
 
 def test_shadow_catchers_show_the_shadow_of_lights(renderer):
-    """Of a dark ball, which reflects next to nothing onto the floor.
+    """The shadow is cast by a dark ball, which reflects next to nothing onto the floor.
 
     Cycles' film is transparent, and its alpha lays the picture over the world. With an opaque film, Cycles weights
     the world behind a catcher by what objects in front leave of the pixel, and by the same a second time: an edge that

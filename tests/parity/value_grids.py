@@ -34,11 +34,11 @@ OBJECT_MATRIX = (
     @ Euler((0.3, 0.2, 1.0)).to_matrix().to_4x4()
     @ Matrix.Diagonal((2.0, 4.0, 0.5, 1.0))
 )
-"""Of the object that the samples belong to."""
+"""Matrix of the object that the samples belong to."""
 VIEWER = (0.0, 0.0, 1.0)
 """World direction from every sample to Cycles' camera."""
 RAY_LENGTH = 10.0
-"""Of the camera's rays, which begin at its near plane."""
+"""Length of the camera's rays, which begin at its near plane."""
 CAMERA_MATRIX = SCENE_MATRIX @ Matrix.Translation((0.0, 0.0, RAY_LENGTH + 0.1))
 _GROUP = 64
 
@@ -55,7 +55,7 @@ class Case:
     """(n,) or (n, 3) float32 by input of the kind; those left out keep the kind's default in both engines."""
     options: dict[str, object] = field(default_factory=dict)
     properties: dict[str, object] = field(default_factory=dict)
-    """Of the Blender node, besides the options that it has by the same name."""
+    """Properties of the Blender node, besides the options that it has by the same name."""
     prepare: Callable[[bpy.types.Node], None] | None = None
     """Whatever else is to be done to the Blender node."""
     sockets: dict[str, str | None] = field(default_factory=dict)
@@ -67,9 +67,9 @@ class Case:
     label: str = ""
     """Tells cases apart that have the same options."""
     relative: float = 1e-5
-    """Of Cycles' value, of vectors the largest part, that ours may differ by; the default allows for rounding."""
+    """Allowed difference as a share of Cycles' value, of vectors the largest part; the default allows for rounding."""
     absolute: float = 1e-6
-    """What it may differ by besides."""
+    """Allowed absolute difference, on top of the relative one."""
     exported: ShaderNode | None = None
     """The node as it is exported, once Cycles has rendered it."""
     idle: set[str] = field(default_factory=set)

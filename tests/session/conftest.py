@@ -18,7 +18,7 @@ FAKE = Path(__file__).with_name("fake_renderer.py")
 
 
 def wait_until(condition, seconds=180.0):
-    """What the condition gives once it is true; fails the test when it does not become so."""
+    """Return the condition's value once it is true; fail the test when it does not become so."""
     deadline = time.monotonic() + seconds
     while not (value := condition()):
         assert time.monotonic() < deadline, "it did not happen in time"
@@ -35,7 +35,7 @@ def is_running(process):
 
 
 def shared_files():
-    """What there is in the folder of named shared memory that Python and this package could have put there."""
+    """Return the names in the folder of named shared memory that Python and this package could have put there."""
     return {path.name for path in Path("/dev/shm").iterdir() if path.name.startswith(("psm_", "rppm"))}
 
 

@@ -55,7 +55,7 @@ class Marking(Denoiser):
 
 
 class Shown(list):
-    """What a viewport gives out: for each picture its iteration and whether it is denoised."""
+    """Pictures that a viewport gives out: the iteration of each and whether it is denoised."""
 
     def __init__(self):
         super().__init__()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What pictures with hair, light below surfaces, displacement or rays of nodes need is compiled ahead like all else."""
+"""Programs for hair, light below surfaces, displacement or rays of nodes are compiled ahead like all others."""
 
 import dataclasses
 from types import SimpleNamespace

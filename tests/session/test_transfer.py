@@ -116,7 +116,7 @@ def test_a_scene_that_cannot_be_sent_leaves_nothing_half_known():
 
 
 def test_instances_that_stay_are_not_described_again():
-    """Of 5000 one is new: beside the order of all, which the whole tells, a single part describes that one."""
+    """One of 5000 is new: beside the order of all, which the whole tells, a single part describes that one."""
     scene = floor_scene()
     scene.instances = [Instance(0, np.eye(4), [0], f"Stone {index}") for index in range(5000)]
     wire = Wire()
@@ -141,7 +141,7 @@ def test_many_new_members_come_in_several_messages():
 
 
 def test_instances_of_every_kind():
-    """Those that go together need not be alike."""
+    """Instances that go together need not be alike."""
     particle = Particle(3.0, 0.5, -1.5, 10.0, 0.1, (1.0, -0.0, 2.0), (0.0, 0.0, 1e-300), (np.inf, 0.0, 0.0))
     scene = floor_scene()
     scene.instances = [
@@ -216,7 +216,7 @@ _LAYOUTS = [
     ["<f4", 1, 0], ["O", [1, 1], 0], ["V0", [1 << 40], 0], ["<U0", [1 << 40], 0], ["f4,O", [1], 0], ["(9,9)f4", [1], 0],
     ["<m8", [1], 0], [5, [1], 0], ["<f4", [1]], ["<f4", [1], 0, 0], {}, None, "abc",
 ]  # fmt: skip
-"""Of runs of arrays, as a process may send them that is broken or means ill."""
+"""Invalid descriptions of runs of arrays, as a broken or malicious process may send them."""
 
 
 @pytest.mark.parametrize("values", [1 << 6, 1 << 15], ids=["in the message", "in shared memory"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a viewport sees before the renderer's first frame."""
+"""Pictures that a viewport shows before the renderer's first frame."""
 
 import copy
 import dataclasses
@@ -18,7 +18,7 @@ from rppm_addon.session.process.viewport_renderer import ViewportRenderer
 
 
 class Sent:
-    """What viewings have sent."""
+    """Messages that viewings have sent."""
 
     def __init__(self):
         self.messages = []

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests of several floors share."""
+"""Helpers that tests of several floors share."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a process that renders frame after frame holds: memory, files, threads, GL objects."""
+"""Resources that are held by a process that renders frame after frame: memory, files, threads, GL objects."""
 
 import ctypes
 import gc

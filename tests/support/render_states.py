@@ -12,7 +12,7 @@ from rppm_addon.scene import Scene
 
 
 def assert_same_array(mine: np.ndarray, other: np.ndarray, name: str) -> None:
-    """Of elements of 32 bits."""
+    """Assert that two arrays of 32-bit elements are the same, bit by bit."""
     assert mine.dtype == other.dtype and mine.shape == other.shape, name
     np.testing.assert_array_equal(mine.view(np.uint32), other.view(np.uint32), name)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of scenes goes to the renderer's process."""
+"""Record of the members of scenes that go to the renderer's process."""
 
 import pytest
 

@@ -33,7 +33,7 @@ class Variant:
     name: str
     defines: dict[str, object] = field(default_factory=dict)
     generated: str = ""
-    """Of a node graph."""
+    """Text generated from a node graph."""
     kinds: str = ""
     """Which kinds of nodes the graph has: the name of their file."""
 
@@ -53,7 +53,7 @@ class Variant:
 
 
 def _graphs_of(text: str) -> dict[str, str]:
-    """What the compiler of node graphs writes for a stage file with this text, by the file of the nodes' kinds."""
+    """Return what the node graph compiler writes for a stage file with this text, by the file of the nodes' kinds."""
     if GENERATED not in text:
         return {"": ""}
     # Worlds and lights trace no rays.
@@ -61,7 +61,7 @@ def _graphs_of(text: str) -> dict[str, str]:
 
 
 def variants() -> list[Variant]:
-    """Of every stage file those that its lint lines name; of those that run node graphs, with every kind of node."""
+    """List every stage file's variants by its lint lines; those that run node graphs have every kind of node."""
     import_declarations()
     found = []
     for path in sorted(SHADER_FOLDER.rglob("*")):

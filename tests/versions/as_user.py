@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a user does with the extension in this Blender: installs the zip, then starts again and uses it.
+"""Actions of a user of the extension in this Blender: installs the zip, then starts again and uses it.
 
 Run as ``python as_user.py install ZIP``, then ``... use FOLDER``, with BLENDER_USER_RESOURCES set to the same folder,
 empty at first; prints JSON. FOLDER gets here.exr and process.exr, pictures of docs/samples/first_light.py.
@@ -81,8 +81,8 @@ def apply_presets() -> dict[str, int]:
 
 
 def raycast() -> list[str]:
-    """What is read of a Raycast node, where there is one: kinds of nodes, and, from Blender 5.2 on, what is exported
-    with a mesh that comes before the material that samples it."""
+    """List what is read of a Raycast node, where there is one: kinds of nodes, and, from Blender 5.2 on, attributes
+    that are exported with a mesh that comes before the material that samples them."""
     if not hasattr(bpy.types, "ShaderNodeRaycast"):
         return []
     bpy.ops.wm.read_factory_settings(use_empty=True)

@@ -17,7 +17,7 @@ AS_USER = Path(__file__).with_name("as_user.py")
 
 
 def as_user(python, folder, *arguments):
-    """What as_user.py reports, in a Blender whose user folder is ``folder``/user."""
+    """Return the report of as_user.py, run in a Blender whose user folder is ``folder``/user."""
     run = subprocess.run(
         [python, AS_USER, *arguments],
         env=os.environ | {"BLENDER_USER_RESOURCES": str(folder / "user"), "PYTHONPATH": ""},

@@ -40,14 +40,14 @@ SCENES = (
     "kaleidoscope",
 )
 FRAMES = {"aquarium": 1, "disco_ball": 12}
-"""Of the scenes that move, the one that is shown."""
+"""Frame that is shown, of each scene that moves."""
 FILM_FRAMES, FILM_SIZE, FILM_SPEED = "1..48..4", (320, 180), 6
 """Which are rendered, how large, and how many are shown a second."""
 SHARED = (SCRIPTS / "stage.py", SAMPLES / "sample_scene.py", SAMPLES / "pool.py")
 
 
 def call(*command: object, label: str) -> str:
-    """What a program prints. Raises SystemExit with the end of what it complains of."""
+    """Run a program and return its output. Raises SystemExit with the end of what it complains of."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         [sys.executable, *map(str, command)], capture_output=True, text=True, cwd=ROOT, env=environment, check=False
@@ -63,7 +63,7 @@ def last_json(text: str) -> dict:
 
 
 def script_digest(name: str) -> str:
-    """Of all that makes a scene."""
+    """Return the digest of all files that make a scene."""
     files = (SCRIPTS / f"{name}.py", *SHARED)
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
@@ -135,7 +135,7 @@ def render_film(name: str, options: argparse.Namespace) -> None:
 
 
 def read_record() -> dict:
-    """What the pictures took, by scene or film."""
+    """Read what the pictures took, by scene or film."""
     return json.loads(RECORD.read_text(encoding="utf-8")) if RECORD.exists() else {}
 
 
@@ -145,7 +145,7 @@ def write_record(name: str, entry: dict) -> None:
 
 
 def write_table() -> None:
-    """What the pictures took, into the page."""
+    """Write a table of what the pictures took into the page."""
     lines = [
         "| scene | pixels | triangles | RPPM: samples, photons, seconds | Cycles: samples, seconds |",
         "|---|--:|--:|--:|--:|",

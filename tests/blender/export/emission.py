@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What exported graphs emit, by the programs that render them."""
+"""Emission of exported graphs, by the programs that render them."""
 
 import math
 from contextlib import contextmanager

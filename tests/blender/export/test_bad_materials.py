@@ -209,7 +209,7 @@ def test_extreme_sliders(scene, renderer, kind):
 
 @pytest.mark.parametrize("kind", SHADERS)
 def test_extreme_values_from_nodes(scene, renderer, kind):
-    """What sliders do not let through comes from nodes: 0 / 0, overflows, huge normals."""
+    """Values that sliders do not let through come from nodes: 0 / 0, overflows, huge normals."""
     material = new_material()
     tree = material.node_tree
     node = add_node(tree, kind)

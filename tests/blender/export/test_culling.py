@@ -44,7 +44,7 @@ def shown(scene):
     ],
 )
 def test_what_is_outside_or_far_is_left_out(things, by_camera, by_distance, left):
-    """Of both ways, only what both would leave out, as in Cycles."""
+    """With both ways, only what both would leave out is left out, as in Cycles."""
     set_of_cycles(things, use_camera_cull=by_camera, use_distance_cull=by_distance)
     assert shown(things) == left
 
@@ -58,7 +58,7 @@ def test_objects_that_do_not_ask_stay(things):
 
 
 def test_what_nodes_of_geometry_multiply_has_boxes_of_its_own(things):
-    """Of cubes beside the view only one is large enough to reach into it."""
+    """Only one of the cubes beside the view is large enough to reach into it."""
     source = things.objects["seen"]
     multiply_cubes(source, [((x, 0.0, 0.0), size) for x, size in ((30.0, 1.0), (40.0, 1.0), (50.0, 99.0), (60.0, 1.0))])
     set_of_cycles(things, use_camera_cull=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What view layers make of a scene: overrides, samples, and collections that are masks."""
+"""View layers of a scene: overrides, samples, and collections that are masks."""
 
 import bpy
 import numpy as np
@@ -85,7 +85,7 @@ def test_samples_of_a_layer(scene):
 
 
 def test_a_scene_that_lives_on_follows_its_layer(masked):
-    """What a viewport or persistent data keep of the objects is not taken for what they are now."""
+    """States of objects that a viewport or persistent data keep are not taken for the current ones."""
     sync, layer = SceneSync(viewport=False), masked.view_layers[0]
 
     def followed():

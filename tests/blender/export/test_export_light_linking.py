@@ -138,7 +138,7 @@ def test_max_bounces(scene, lit):
 
 
 def test_shadow_terminator(scene, lit):
-    """Of objects alone and of what is multiplied."""
+    """Instances have the offsets of their objects; by default these are 0.1 for geometry and 0 for shading."""
     meshes, _ = lit
     meshes[1].shadow_terminator_geometry_offset, meshes[1].shadow_terminator_shading_offset = 0.25, 0.5
     offsets = [(one.terminator_geometry_offset, one.terminator_shading_offset) for one in export(scene).instances]

@@ -10,7 +10,7 @@ from rppm_addon.blender.export.meshes import element_arrays
 
 
 def naive_arrays(mesh):
-    """What the export should give, by Blender's plain documented properties."""
+    """Return the arrays that the export should give, by Blender's plain documented properties."""
     mesh.calc_loop_triangles()
     uv = next((layer for layer in mesh.uv_layers if layer.active_render), None)
     return {

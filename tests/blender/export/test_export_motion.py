@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a final render exports of things that move."""
+"""Motion in the exports of final renders."""
 
 import bpy
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a viewport looks at, from the matrices that Blender draws it with."""
+"""Views of viewports, from the matrices that Blender draws them with."""
 
 from types import SimpleNamespace
 
@@ -27,7 +27,7 @@ def camera(scene):
 
 
 def context_of(camera, view_perspective="CAMERA", projection=None, **space):
-    """What view_draw is given."""
+    """Return the context and the depsgraph that view_draw is given."""
     bpy.context.view_layer.update()
     depsgraph = bpy.context.evaluated_depsgraph_get()
     if projection is None:

@@ -17,7 +17,7 @@ EXAMPLES = int(os.environ.get("RPPM_FUZZ_EXAMPLES", "0"))
 
 
 def node_types() -> list[str]:
-    """Of all nodes that the shader editor offers."""
+    """List the types of all nodes that the shader editor offers, without outputs and groups."""
     material = bpy.data.materials.new("all")
     names = []
     for name in sorted(dir(bpy.types)):

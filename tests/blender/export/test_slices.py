@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is done in slices is done once, and threads compute what takes long."""
+"""Work in slices: each step is done once, and threads compute what takes long."""
 
 import threading
 

@@ -277,7 +277,7 @@ def test_what_objects_lack_is_told_until_they_have_it(synced):
 
 
 def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
-    """What an edit costs does not grow with the scene: the depsgraph's instances are not listed again."""
+    """The cost of an edit does not grow with the scene: the depsgraph's instances are not listed again."""
     passes = []
     monkeypatch.setattr(synced._objects, "begin", lambda *a: passes.append(a))
     for edit in (move, edit_mesh, paint, brighten, move_light, recolor_world):
@@ -486,7 +486,7 @@ def test_many_new_objects_are_exported_in_slices(synced):
 
 @pytest.fixture
 def kept(synced):
-    """What a viewport had exported that was switched to Solid; the engine's own handlers note what changes."""
+    """Kept export of a viewport that was switched to Solid; the engine's own handlers note what changes."""
     graph = bpy.context.evaluated_depsgraph_get()
     kept_exports.keep(kept_exports.key_of(graph), synced)
     follow = next(f for f in bpy.app.handlers.depsgraph_update_post if f.__name__ == "follow")
@@ -499,7 +499,7 @@ def kept(synced):
 
 
 def switch_back() -> SceneSync | None:
-    """What a viewport that is switched to Rendered finds."""
+    """Return the export that a viewport finds when it is switched to Rendered, or None."""
     bpy.context.view_layer.update()
     return kept_exports.take(bpy.context.evaluated_depsgraph_get())
 

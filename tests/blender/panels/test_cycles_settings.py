@@ -47,7 +47,7 @@ def test_what_is_out_of_range_is_brought_into_it(scene):
 
 
 def test_passes_of_all_view_layers(scene):
-    """Those for which Cycles has switches of its own."""
+    """Passes for which Cycles has switches of its own are copied both ways."""
     other = scene.view_layers.new("Other")
     other.cycles.denoising_store_passes = other.cycles.pass_debug_sample_count = True
     bpy.ops.rppm.copy_from_cycles()

@@ -46,7 +46,7 @@ def test_instances_have_the_group_of_their_object(grouped):
 
 
 def test_a_scene_that_lives_on_follows_its_groups(grouped):
-    """Of which Blender tells nothing."""
+    """Blender tells nothing of changes of light groups."""
     sync = SceneSync(viewport=False)
 
     def follow():

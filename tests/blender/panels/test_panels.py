@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panels show in which context, and that all that they show exists."""
+"""Contents of the panels in each context; all that they show exists."""
 
 from types import SimpleNamespace
 

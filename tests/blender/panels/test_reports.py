@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What final renders leave for the panels, against what was rendered."""
+"""Reports that final renders leave for the panels, against what was rendered."""
 
 import math
 import sys

@@ -70,14 +70,14 @@ def fresh_scene(frame: int, monkeypatch) -> Scene:
 
 
 def picture(mapper: ProgressivePhotonMapper, scene: Scene) -> Frame:
-    """Of a scene that the mapper has just taken."""
+    """Render a scene that the mapper has just taken."""
     for _ in range(ITERATIONS):
         mapper.iterate()
     return read_frame(mapper.film, scene.exposure)
 
 
 def fresh_picture(scene: Scene, device) -> Frame:
-    """What a photon mapper that has rendered nothing before makes of a scene."""
+    """Render a scene with a photon mapper that has rendered nothing before."""
     context, library = device
     with context.moderngl:
         mapper = ProgressivePhotonMapper(context, library)

@@ -14,9 +14,9 @@ pytestmark = pytest.mark.skipif(bpy.app.version < (5, 0), reason="compositors ar
 
 SIZE = 48
 TYPES = {"VALUE": "FLOAT", "RGBA": "RGBA", "VECTOR": "VECTOR"}
-"""Of a socket of the File Output node, by the kind of its values."""
+"""Type of a socket of the File Output node, by the kind of its values."""
 NAMES = {"Image": "Combined"}
-"""Of sockets that are named otherwise than their pass."""
+"""Pass of each socket that is named otherwise than its pass, by the socket's name."""
 EVEN = {"Transmission Direct", "Debug Sample Count"} | {
     f"Crypto{kind}{level:02d}" for kind in ("Object", "Material", "Asset") for level in (1, 2)
 }

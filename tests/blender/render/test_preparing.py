@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is compiled while the solid view of a file is looked at."""
+"""Programs that are compiled while the solid view of a file is looked at."""
 
 from types import SimpleNamespace
 

@@ -124,7 +124,7 @@ def test_the_process_bakes_what_the_thread_does(lit, windowed, monkeypatch):
 
 
 def test_errors_reach_the_user(lit, windowed):
-    """That of a scene, and that of a process which dies with it again and again."""
+    """A process that dies with a scene again and again is an error that names its log."""
 
     def kill():
         task = Path(f"/proc/{os.getpid()}/task")

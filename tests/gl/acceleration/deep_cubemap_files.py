@@ -16,7 +16,7 @@ FOLDER = ROOT.parent / "shared" / "scenes"
 
 
 def ply_triangles(name: str) -> np.ndarray:
-    """Of a PLY file in ASCII with triangles only."""
+    """Return the triangles of a PLY file in ASCII with triangles only."""
     path = FOLDER / f"{name}.ply"
     if not path.exists():
         pytest.skip(f"{path.name} is not here ({FOLDER})")
@@ -31,7 +31,10 @@ def ply_triangles(name: str) -> np.ndarray:
 
 
 def blend_triangles(name: str, folder: Path, most: int | None = None) -> np.ndarray:
-    """Of a .blend file, instance by instance, the first ``most``; exported by a process of its own to ``folder``."""
+    """Return the first ``most`` triangles of a .blend file, instance by instance.
+
+    A process of its own exports the file to ``folder``.
+    """
     path, saved = FOLDER / f"{name}.blend", folder / f"{name}.npz"
     if not path.exists():
         pytest.skip(f"{path.name} is not here ({FOLDER})")

@@ -165,7 +165,7 @@ def read_structure(cubemap: DeepCubemap) -> Structure:
 
 
 def as_sets(structure: Structure) -> tuple[np.ndarray, np.ndarray]:
-    """What does not depend on the order in which room was given out: two structures are the same if these are equal.
+    """Return what does not depend on the order of allocation: two structures are the same if these are equal.
 
     A row a cell: level, face, y, x, kind, bins, near, far, slices; and a row an entry: the first four of its cell,
     then the other columns. Both are sorted.

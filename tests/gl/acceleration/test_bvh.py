@@ -29,7 +29,7 @@ def bits(hits: np.ndarray) -> np.ndarray:
 
 @pytest.fixture
 def traced(context, library):
-    """Of triangles, with a BVH."""
+    """Function that puts triangles into a BVH, to trace rays through it."""
     opened = []
 
     def trace(triangles, **options):
@@ -194,7 +194,7 @@ def test_what_the_device_cannot_hold_is_an_error(context, traced, monkeypatch):
 
 
 def films(mapper, scene, structure):
-    """Of a scene, and after an object was moved."""
+    """Return the radiance of a scene, and that after an object was moved."""
     scene = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, acceleration_structure=structure))
     moved = dataclasses.replace(scene, instances=[*scene.instances])
     matrix = np.array(moved.instances[8].matrix)

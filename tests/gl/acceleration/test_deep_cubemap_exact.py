@@ -20,7 +20,7 @@ from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE
 from rppm_addon.self_test.ray_queries import TracedTriangles
 
 RAYS = 6600
-"""Of each kind about each center: more than two million in all."""
+"""Rays of each kind about each center: more than two million in all."""
 _CHUNK = 30_000  # triangles that are tested one by one in a dispatch; llvmpipe ends loops after 65535 rounds
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What building must guarantee, without a ray: every point of every triangle is on file.
+"""Guarantees of building, without a ray: every point of every triangle is on file.
 
 A ray that is computed in float32 comes to a surface at points that are off by rounding, so the
 points are shaken by as much.

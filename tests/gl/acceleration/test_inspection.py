@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What rays cost in the deep cubemap, as pictures."""
+"""Cost of rays in the deep cubemap, as pictures."""
 
 import numpy as np
 import pytest

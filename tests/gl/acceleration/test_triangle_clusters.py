@@ -92,7 +92,7 @@ def test_large_scenes_have_clusters(count, most):
 
 
 def test_pictures_are_the_same(mapper, other_mapper, monkeypatch):
-    """Of instances, one of them shining, that move while the shutter is open; and where one has been moved."""
+    """Instances, one of them shining, move while the shutter is open; in the second picture one has been moved."""
     room = scenes.crowded_room(
         16, photons=256, camera_path_length=3, photon_path_length=3,
         acceleration_structure=AccelerationStructure.DEEP_CUBEMAP,

@@ -77,7 +77,7 @@ def test_radii_fall_where_photons_are_many(mapper):
 
 
 def test_a_factor_multiplies_the_radius_of_its_pixel(mapper):
-    """Of importons that gathering rays did not lead to."""
+    """The importons are those that gathering rays did not lead to."""
     seen = {}
     for adaptive in (False, True):
         mapper.build(many_photons(use_adaptive_radius=adaptive, camera_path_length=1))

@@ -165,7 +165,7 @@ def pixel_points(scene: Scene) -> np.ndarray:
 
 
 def blurred(radiance, points: np.ndarray, radius: float) -> np.ndarray:
-    """What an iteration of a radius estimates on average: the radiance under the kernel, by quadrature."""
+    """Return the mean estimate of an iteration of a radius: the radiance under the kernel, by quadrature."""
     node, weight = np.polynomial.legendre.leggauss(12)
     x, weight = 0.5 * (node + 1), 0.5 * weight
     around = 2 * np.pi * (np.arange(16) + 0.5) / 16

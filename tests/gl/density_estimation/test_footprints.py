@@ -127,8 +127,9 @@ def trace(origin: np.ndarray, ray: np.ndarray, surfaces: list) -> tuple[np.ndarr
 
 
 def chain_footprints(mapper, surfaces: list, meshes: list, position: tuple, target: tuple, orthographic: bool):
-    """Of all pixels whose path goes along the chain: the landing parallelogram's area by ray differentials and the
-    area pi (r / s_r)^2 that the renderer's radius stands for, m^2, and each surface's segment lengths and cosines."""
+    """Return values of the pixels whose path follows the chain: the landing parallelogram's area by ray differentials
+    and the area pi (r / s_r)^2 that the renderer's radius stands for, m^2, and each surface's segment lengths and
+    cosines."""
     half = 0.3 if orthographic else 0.05
     camera = Camera(scenes.looking(position, target), (-half, half, -half, half), SIZE, SIZE, orthographic)
     materials = [scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))]

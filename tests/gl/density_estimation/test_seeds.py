@@ -87,7 +87,7 @@ def test_errors_of_seeds_are_independent(renderer, direct_light):
 
 
 def test_subpixel_offsets_of_seeds_are_independent():
-    """Of one iteration and of the mean of eight, over 400 neighboring seeds."""
+    """Offsets are those of one iteration and the mean of eight, over 400 neighboring seeds."""
     offsets = np.array([[filter_offsets(i, 1.5, seed) for i in range(1, 9)] for seed in range(400)])
     for values in (offsets[:, 0], offsets.mean(1)):
         deviation = values.std(0)

@@ -13,7 +13,7 @@ from rppm_addon.integrator.density_estimation.density_estimator import DensityEs
 from rppm_addon.scene import DensityEstimation, DirectLight
 
 DISK_FACTOR = 3.0
-"""Of shaders/common/disk_radius.glsl."""
+"""Factor of the least radius in shaders/common/disk_radius.glsl."""
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
 
 

@@ -48,7 +48,7 @@ def test_what_the_link_refuses_names_the_file(context, program):
 
 
 def test_what_the_driver_says_is_logged_unless_it_is_a_false_alarm(context, program, caplog, monkeypatch):
-    """That of Mesa for a variable of the whole shader, which main sets before it calls the function."""
+    """The false alarm is Mesa's for a variable of the whole shader, which main sets before it calls the function."""
     caplog.set_level(logging.DEBUG, "rppm_addon")
     own = source("uint own; void set() { values[0] = own; } void main() { own = 1u; set(); }")
     Linker(context).link(program.glo, [own])

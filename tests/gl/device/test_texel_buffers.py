@@ -17,7 +17,7 @@ from rppm_addon.scene.errors import DeviceError
 COUNT = 37
 """No multiple of the words of a texel."""
 WORDS = 26
-"""That the shader writes of an item."""
+"""Words that the shader writes for an item."""
 SHADER = """#version 430 core
 layout(local_size_x = 64) in;
 readonly buffer Things;
@@ -59,7 +59,7 @@ def shader(tmp_path, monkeypatch):
 
 @pytest.fixture
 def buffers(context, shader, tmp_path, monkeypatch):
-    """What the shader reads and writes; of Things there are more bytes than a storage block has."""
+    """Buffers that the shader reads and writes; that of Things has more bytes than a storage block."""
     monkeypatch.setenv("RPPM_CACHE", str(tmp_path))
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", COUNT * WORDS * 4)
     random = np.random.default_rng(1)

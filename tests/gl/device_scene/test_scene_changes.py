@@ -143,7 +143,7 @@ def test_the_center_of_the_deep_cubemap_changes_no_picture(mapper, other_mapper)
 
 @pytest.mark.parametrize("structure", [AccelerationStructure.DEEP_CUBEMAP, AccelerationStructure.BVH])
 def test_only_what_changed_is_built(mapper, monkeypatch, structure):
-    """Of an edit no more is redone than it needs: no geometry and no structure of it for a view or a material."""
+    """An edit redoes no more than it needs: no geometry and no structure of it for a view or a material."""
     scene = through(structure, first_scene())
     mapper.build(scene)
     done: list[str] = []

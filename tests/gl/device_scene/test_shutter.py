@@ -131,7 +131,7 @@ def test_an_iteration_shows_the_scene_of_its_moment(mapper, other_mapper):
 
 @pytest.mark.long
 def test_a_caustic_is_the_mean_of_those_at_moments(renderer):
-    """Of a glass ball over a floor: brute force, one static picture for each part of the time."""
+    """A glass ball over a floor, against brute force: one static picture for each part of the time."""
     still = Scene(
         Camera(scenes.looking((0, -3.5, 3.5), (0, 0, 0.2)), (-0.4, 0.4, -0.4, 0.4), 32, 32),
         [scenes.rectangle("floor", (-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)), scenes.sphere("ball")],

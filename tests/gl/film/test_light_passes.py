@@ -16,7 +16,7 @@ KINDS = ("Diffuse", "Glossy", "Transmission")
 LIGHT = (*(entry.name for entry in SCATTERED_LIGHT), "Emission", "Environment", "Caustics")
 BY_PHOTONS = {"direct_light": DirectLight.PHOTONS, "use_final_gather": False}
 ROUNDING = {"rtol": 2e-6, "atol": 2e-6}
-"""Of sums of some thousand floats that take turns in being large."""
+"""Tolerances for sums of some thousand floats that take turns in being large."""
 
 
 def everything(size: int = 24, **settings: object):

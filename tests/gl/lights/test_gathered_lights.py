@@ -59,7 +59,7 @@ def pictures(mapper, scene: Scene, iterations: int = ITERATIONS) -> np.ndarray:
 
 
 def assert_same_mean(found: np.ndarray, expected: np.ndarray) -> None:
-    """Of the picture, and of its quarters: within four standard errors of both, from the spread over seeds."""
+    """Assert that the means of each quarter agree within four standard errors of both, from the spread over seeds."""
     half = PIXELS // 2
     for rows in (slice(0, half), slice(half, None)):
         for columns in (slice(0, half), slice(half, None)):

@@ -32,7 +32,10 @@ def solid_angles(corners: np.ndarray) -> np.ndarray:
 
 
 def irradiance(polygon: np.ndarray, normal: np.ndarray) -> float:
-    """Of a polygon (n, 3) of radiance 1 at the origin, wholly above its plane, W/m^2 (Lambert 1760)."""
+    """Return the irradiance at the origin from a polygon (n, 3) of radiance 1, W/m^2 (Lambert 1760).
+
+    The polygon is wholly above the plane through the origin that has the normal.
+    """
     unit = polygon / np.linalg.norm(polygon, axis=1, keepdims=True)
     following = np.roll(unit, -1, axis=0)
     turned = np.cross(unit, following)

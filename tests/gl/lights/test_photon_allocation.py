@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What statistics say about the power and the photons of each light source."""
+"""Statistics of the power and the photons of each light source."""
 
 import dataclasses
 import math

@@ -136,7 +136,7 @@ def test_portals_in_wrong_places_change_no_mean(mapper, name):
 
 @pytest.mark.parametrize("behind", ["gathering rays", "glossy rays", pytest.param("photons", marks=pytest.mark.long)])
 def test_panes_without_shadow_behind_portals_change_nothing(mapper, behind):
-    """What goes straight through one is weighted by how shadow rays find it from where it was scattered."""
+    """Light that goes straight through a pane is weighted by how shadow rays find it from where it was scattered."""
     scene, low, seeds = with_portals("in the hole", iterations=2), -0.4, 2
     if behind == "glossy rays":
         scene.materials[0] = material("floor", Lobe(LobeKind.GLOSSY, roughness=0.2, color=FLOOR))

@@ -166,7 +166,7 @@ def test_a_light_in_front_of_an_emissive_mesh(renderer):
 
 
 def test_meshes_that_are_left_to_paths_are_reflected_once(renderer):
-    """What hides nothing from shadow rays, and what shines by the path that comes to it."""
+    """One mesh hides nothing from shadow rays, and the other shines by the path that comes to it."""
     for surface, visibility in (
         (SHINING, RayVisibility.ALL & ~RayVisibility.SHADOW),
         (shining_by_path(), RayVisibility.ALL),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What shadow rays pass and a rough reflection is seen through counts once: both ways to a light know each other from
-where the reflection begins, not from the pane."""
+"""Light that shadow rays and a rough reflection find through one pane counts once: both ways to a light are weighted
+from where the reflection begins, not from the pane."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.scene import Instance, Light, LightKind, Scene, World
 
 HALF, HEIGHT = 0.4, 1.5
-"""Of a lamp above the hole in the ceiling, m."""
+"""Half of the width of a lamp above the hole in the ceiling, and its height over the floor, m."""
 
 
 def lit_by(kind: str) -> Scene:

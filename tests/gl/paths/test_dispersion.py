@@ -16,7 +16,7 @@ from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Ma
 INDEX, ABBE_NUMBER = 1.6, 30.0
 WEDGE = np.radians(30.0)
 OUTWARD = -np.array([np.sin(WEDGE), 0.0, np.cos(WEDGE)])
-"""Of the wedge's lower face."""
+"""Outward normal of the wedge's lower face."""
 
 
 def glass(kind: LobeKind = LobeKind.GLASS, **inputs: float) -> Material:
@@ -96,8 +96,8 @@ def test_white_stays_white(mapper):
 
 
 def test_reflected_and_refracted_light_are_white_together(mapper):
-    """Of photons that came to the upper face, in channels apart, within four times their standard error: by chance, a
-    twentieth of them is reflected."""
+    """Photons that came to the upper face are compared in channels apart, within four times their standard error: by
+    chance, a twentieth of them is reflected."""
     dispersing = dataclasses.replace(glass(), abbe_number=8.0)
     mapper.build(prism(dispersing, photons=16384, photon_path_length=3, direct_light=DirectLight.PHOTONS))
     arrived, left, escaped = np.zeros(3), np.zeros(3), np.zeros(3)

@@ -356,7 +356,7 @@ def test_software_drivers_trace_first_hits(mapper, asked, rasterizes):
 
 
 def test_what_is_drawn_is_what_is_traced(mapper):
-    """Of a scene with all kinds of surfaces: but for edges, the same hits bit for bit."""
+    """In a scene with all kinds of surfaces, hits are the same bit for bit, but for edges."""
     hits = {}
     for route in (FirstCameraHits.RASTERIZED, FirstCameraHits.TRACED):
         mapper.build(scenes.crowded_room(48, first_camera_hits=route, camera_path_length=1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What gathering rays find is shared among pixels without a change of its mean."""
+"""Light that gathering rays find is shared among pixels without a change of its mean."""
 
 import dataclasses
 
@@ -165,7 +165,7 @@ def picture(mapper) -> np.ndarray:
 
 
 def test_storage_blocks_give_the_same_picture(mapper, other_mapper, library, monkeypatch):
-    """What software drivers read through image units."""
+    """Software drivers read the same data through image units instead of storage blocks."""
     as_it_is = picture(mapper)
     monkeypatch.setattr(library, "_reads_texels", False)
     monkeypatch.delitem(library._programs, ("final_gather/share.comp", (), ()))

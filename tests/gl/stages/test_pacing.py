@@ -109,7 +109,7 @@ def test_a_device_that_is_not_waited_for_is_asked_afterward(monkeypatch):
 
 
 def picture(mapper, library, longest):
-    """That of two iterations, with so many seconds for a piece, and the number of pieces."""
+    """Return the radiance after two iterations, with so many seconds for a piece, and the number of pieces."""
     pacing = library.pacing
     before, pacing.most_seconds = pacing.pieces, longest
     pacing.forget()

@@ -51,8 +51,8 @@ def test_pixels_with_one_photon_have_all_of_it_with_a_sign(mapper):
 
 
 def test_squares_of_signed_sums_are_the_variance_of_photons(mapper):
-    """Of photons that are independent, as those of many lights in one place are; those of one light lie more evenly. Of
-    lights without extent, with fixed points in the pixels, nothing else makes noise."""
+    """Photons of many lights in one place are independent; those of one light lie more evenly. With lights without
+    extent and fixed points in the pixels, nothing else makes noise."""
     scene = floor_and_ball(24, photons=2048, filter_width=0.0, alpha=0.999999)
     scene.lights = [Light("point", LightKind.POINT, scenes.placed(0.1, 0.1, 0.9), np.full(3, 1.0))] * 512
     found, squares = [], []

@@ -12,7 +12,7 @@ from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
 
 ANGLE = math.radians(50.0)
-"""Of the sun to the floor's normal."""
+"""Angle of the sun to the floor's normal, radians."""
 
 LOBES = {
     "diffuse": [Lobe(LobeKind.DIFFUSE, color=(0.9, 0.6, 0.3))],
@@ -64,7 +64,7 @@ def scattered(mapper, surface: Material) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("name", LOBES)
 def test_light_leaves_by_what_is_seen_from_there(mapper, name):
-    """Of light that a facing mix scatters, each direction gets the share that a viewer there sees."""
+    """In each direction, a facing mix scatters the share of light that a viewer there sees."""
     plain, cosines = scattered(mapper, material("plain", *LOBES[name]))
     expected = plain * (1 - cosines[:, None])
     shown, _ = scattered(mapper, facing_mix(LOBES[name]))

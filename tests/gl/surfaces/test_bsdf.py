@@ -24,7 +24,7 @@ COUNT = 1 << 18
 
 @dataclass
 class Lobe:
-    """What a lobe gave, (COUNT, 4) each: samples with their side, evaluations with theirs, pairs for reciprocity,
+    """Results of a lobe, (COUNT, 4) each: samples with their side, evaluations with theirs, pairs for reciprocity,
     and functions of the direction weighted by sampling and by density."""
 
     sampled: np.ndarray

@@ -100,7 +100,7 @@ def displaced(context, library):
 
 
 def seen_waves(frame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of what a camera 3 m above sees in the middles of pixels: x, depth and normal."""
+    """Return x, depth and normal of the points that a camera 3 m above sees in the middles of pixels."""
     depth = frame.passes["Depth"].astype(np.float64)
     ray = 0.6 * ((np.arange(32) + 0.5) / 32 - 0.5)
     return ray * depth, depth, frame.passes["Normal"]
@@ -360,7 +360,7 @@ def test_what_is_divided_may_have_no_triangles(displaced):
 
 
 def test_what_moves_leaves_nothing_behind(displaced):
-    """Of objects and shapes that are others in each scene, those of scenes before are forgotten."""
+    """Objects and shapes that are others in each scene are forgotten with the scenes before."""
     mesh = grid(8)
     scene = scene_of(waves(), plain(), meshes=[mesh])
     left = []

@@ -174,8 +174,8 @@ def test_fibers_store_no_photons_however_smooth_lobes_must_be_to_be_followed(map
 
 @pytest.mark.parametrize("by_sun", [True, False])
 def test_photons_leave_out_where_viewers_see_no_light(mapper, by_sun):
-    """Of hair on a mesh, viewers between light's mirrored and straight way around the fiber and the normal see no light
-    that is sampled, and those elsewhere do. Of a world they see all: paths find it."""
+    """Viewers of hair on a mesh see no sampled light where they are between its mirrored and straight way around
+    the fiber and the normal; viewers elsewhere do. All viewers see a world's light: paths find it."""
     graph = NodeGraph()
     options = {"model": "HUANG", "parametrization": "COLOR"}
     graph.surface = graph.add("bsdf_hair_principled", "bsdf", options=options, color=(0.9, 0.9, 0.9))

@@ -59,8 +59,8 @@ def ceiling(z: float):
 
 
 def beyond(t: float) -> float:
-    """Of a disk of radius 1 what lies beyond a line at a distance t from its center: rays by the cosine are spread
-    evenly over the disk below them."""
+    """Return the share of a disk of radius 1 that lies beyond a line at a distance t from its center: rays by the
+    cosine are spread evenly over the disk below them."""
     return (math.acos(t) - t * math.sqrt(1.0 - t * t)) / math.pi
 
 
@@ -167,7 +167,7 @@ def test_a_pass_holds_what_rays_find(renderer):
 
 @pytest.mark.parametrize("level", [0, 1])
 def test_a_raycast_meets_nothing_until_it_was_traced(context, library, level):
-    """What another hit left would name a triangle that is no more."""
+    """The result that another hit left would name a triangle that is no more."""
     left = NODE_RAY.zeros(2)
     left["found"], left["direction"], left["reach"] = (1.0, 1.0, 0.0), (0.25, 0.25, 7.0), 3.0
     rays, results = context.moderngl.buffer(left.tobytes()), context.moderngl.buffer(reserve=16)

@@ -31,7 +31,7 @@ def wax(color: tuple[float, float, float], radius: float, method: str = "RANDOM_
 
 
 def ball(material: Material, **settings: object) -> Scene:
-    """Of radius 1, before a camera that sees nothing else."""
+    """Return a scene of a ball of radius 1, before a camera that sees nothing else."""
     camera = Camera(scenes.looking((0, -5, 0), (0, 0, 0)), (-0.1, 0.1, -0.1, 0.1), 24, 24)
     defaults = {"photons": 64, "filter_width": 0.0, "camera_path_length": 2}
     instances = [Instance(0, np.eye(4), [0])]
@@ -116,8 +116,8 @@ def test_splats_meet_importons_where_paths_come_out(mapper):
 
 
 def test_photons_leave_where_they_come_out(mapper):
-    """Of a sun's photons that have come to a ball, the albedo goes on. Free paths are short against the ball, so that
-    it is that of a half space: the fit of it is within 2 %."""
+    """A sun's photons that have come to a ball go on with their flux times the albedo. Free paths are short against the
+    ball, so that the albedo is that of a half space: the fit of it is within 2 %."""
     color = (0.8, 0.5, 0.2)
     scene = ball(
         wax(color, 0.02), photons=32768, photon_path_length=2, direct_light=DirectLight.PHOTONS, camera_path_length=1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What photons leave plates by that let light through below their surfaces, against random walks in NumPy."""
+"""Flux of photons that leave plates with subsurface scattering, against random walks in NumPy."""
 
 import numpy as np
 import scenes
@@ -14,13 +14,16 @@ WALKS, PHOTONS = 100_000, 131_072
 
 
 def half_space_albedo(color: float) -> float:
-    """Of single scattering in the medium of RANDOM_WALK (d'Eon, A Hitchhiker's Guide to Multiple Scattering, 53.7)."""
+    """Return the single-scattering albedo in the medium of RANDOM_WALK.
+
+    After d'Eon, A Hitchhiker's Guide to Multiple Scattering, 53.7.
+    """
     s = 4.20863 * color - np.sqrt(9.59217 + color * (41.6808 + 17.7126 * color)) + 4.09712
     return 1.0 - s * s
 
 
 def skin_albedo(color: float) -> float:
-    """Of single scattering in RANDOM_WALK_SKIN (Chiang et al. 2016, as in Cycles)."""
+    """Return the single-scattering albedo in RANDOM_WALK_SKIN (Chiang et al. 2016, as in Cycles)."""
     blend = color**0.25
     low = 1.82605 * np.arctan((4.98511 + 0.127356) * color) ** 1.09686
     high = 0.49631 * np.arctan((4.2319 + 0.00310604) * color) ** 2.40603
@@ -56,8 +59,9 @@ def refracted(rng: np.random.Generator, viewers: np.ndarray, alpha: float) -> np
 
 
 def walked(method: str) -> tuple[np.ndarray, np.ndarray]:
-    """What of a viewer's paths comes out behind a plate and before it, for viewers by their cosine: what of the flux
-    leaves there by reciprocity; and that times the cosine. (2, 2), and standard errors."""
+    """Return the share of viewers' paths that comes out behind a plate and before it, and the mean of it times the
+    viewer's cosine, (2, 2), with standard errors. Viewers are distributed by their cosine, so that by reciprocity the
+    share is that of the flux that leaves there."""
     rng = np.random.default_rng(1)
     viewers = np.sqrt(rng.random(WALKS))
     if method == "RANDOM_WALK":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What viewports make of pictures of few samples and pixels, and of the last picture while the view moves."""
+"""Pictures of few samples and pixels in viewports, and the last picture while the view moves."""
 
 import dataclasses
 

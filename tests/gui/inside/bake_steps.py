@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a test can ask of Blender's bake operator."""
+"""Steps that a test can ask of Blender's bake operator."""
 
 import bpy
 import numpy as np

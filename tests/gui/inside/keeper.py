@@ -74,7 +74,7 @@ def shared_memory() -> dict:
 
 
 def resources(folders: list[str]) -> dict:
-    """What each active process holds, in bytes and numbers, and the files in ``folders``."""
+    """Return the resources of each active process, in bytes and numbers, and the bytes of the files in ``folders``."""
     found = {}
     for pid, command in processes()["processes"].items():
         place = Path("/proc", pid)
@@ -94,7 +94,7 @@ def resources(folders: list[str]) -> dict:
 
 
 def _memory(handle: Path) -> os.stat_result | None:
-    """Of a handle of shared memory."""
+    """Return the status of a handle of shared memory, or None for other handles and those that are gone."""
     try:
         return handle.stat() if os.readlink(handle).startswith("/memfd:") else None
     except OSError:

@@ -84,7 +84,7 @@ def draw_window() -> None:
 
 
 def readings() -> dict[str, object]:
-    """What the viewport has last reported of the scene."""
+    """Return the iterations and watts that the viewport has last reported of the scene; empty without a report."""
     scene = window().scene
     reports = importlib.import_module(f"{_addon()}.rppm_addon.blender.reports").reports_of(scene.session_uid)
     found = reports.viewport

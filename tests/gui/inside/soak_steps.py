@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What ../window_soak.py does to a file, over and over: a few states of the scene that come again in turn."""
+"""Steps of ../window_soak.py, which repeats them on a file: a few states of the scene that come again in turn."""
 
 import array
 
@@ -9,7 +9,7 @@ from window_steps import window
 
 STATES = 8
 FRAMES = 10
-"""Of the animation, which is the same in each state but for what the state changes."""
+"""Frames of the animation, which is the same in each state but for what the state changes."""
 SIZES = ((96, 64), (64, 96), (80, 80), (96, 64))
 COLORS = ((0.8, 0.8, 0.8), (0.8, 0.2, 0.1), (0.1, 0.6, 0.2), (0.1, 0.2, 0.8))
 _kept: dict[str, object] = {}

@@ -199,7 +199,7 @@ def _note(*_: object) -> None:
 
 
 def seen() -> dict:
-    """What was noted since watch(): times, checksums and mean values (0 to 255); and the time now."""
+    """Return the notes since watch(): times, checksums and mean values (0 to 255); and the time now."""
     times, sums, means, _ = zip(*_drawn) if _drawn else ((), (), (), ())
     return {"times": times, "sums": sums, "means": means, "now": time.perf_counter()}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a test can ask of Blender: each function is a step; what it returns must fit into JSON."""
+"""Steps that a test can ask of Blender: each function is a step; what it returns must fit into JSON."""
 
 import time
 
@@ -61,7 +61,7 @@ def split(kind: str, size: str, wanted: int) -> None:
 
 
 def keep_smallest(kind: str) -> None:
-    """Of the areas of a kind keep the smallest one; the others become text editors."""
+    """Keep the smallest one of the areas of a kind; the others become text editors."""
     found = sorted((area for area in window().screen.areas if area.type == kind), key=lambda a: a.width * a.height)
     for other in found[1:]:
         other.type = "TEXT_EDITOR"

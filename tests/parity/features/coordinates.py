@@ -289,7 +289,7 @@ value("Bump", "seen from behind", _bump({"Distance": 0.3}), 0.5, 0.5, prepare=_t
 
 
 def _far_and_parallel() -> None:
-    """What a pixel sees does not grow with the distance."""
+    """Set up a far orthographic camera: the part that a pixel sees does not grow with the distance."""
     camera = bpy.context.scene.camera
     camera.data.type, camera.data.ortho_scale = "ORTHO", 3.0
     camera.data.clip_end = 1000.0

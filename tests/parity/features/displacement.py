@@ -50,7 +50,7 @@ def vector(space: str):
 
 
 def along_u(net):
-    """What is not the same on both sides of the map's seam."""
+    """Return a displacement along U, which is not the same on both sides of the map's seam."""
     u = net.out("SeparateXYZ", "X", {0: net.out("TexCoord", "UV")})
     return net.out("Displacement", 0, {"Height": u, "Midlevel": 0.0, "Scale": 0.4})
 

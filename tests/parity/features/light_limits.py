@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What light is kept from: shadows that it does not cast, and surfaces that it is not scattered by."""
+"""Limits of lights: shadows that a light does not cast, and surfaces that do not scatter it."""
 
 import bpy
 

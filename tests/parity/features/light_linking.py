@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lights shine on, and what casts shadows in their light."""
+"""Light linking: the objects that lights shine on, and the objects that cast shadows in their light."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from .net import material
 
 
 def _collection(*states: tuple[str, str], child: str = "") -> bpy.types.Collection:
-    """Of objects with how they are linked, or in a collection of its own that is linked as ``child`` says."""
+    """Return a collection of objects with their link states, or one with these in a child whose state is ``child``."""
     made = inner = bpy.data.collections.new("Linked")
     if child:
         inner = bpy.data.collections.new("Within")

@@ -27,7 +27,7 @@ VALUES = {
 }  # fmt: skip
 SAMPLES = 32
 WRONG = 0.002
-"""Of white: a pixel of values that differs more is wrong."""
+"""Fraction of white: a pixel of values that differs more is wrong."""
 
 
 @dataclass(frozen=True)
@@ -35,15 +35,15 @@ class Measurement:
     """Differences as shares of Cycles' radiance."""
 
     mean: float
-    """Of light: of the mean, in the channel where it is largest. Of values: mean absolute difference."""
+    """Difference of the mean, in the channel where it is largest, for light; mean absolute difference for values."""
     mean_error: float
     """Standard error of the mean's difference, from seeds."""
     block: float
-    """Of the mean over 8 x 8 pixels, in the block where it is largest beyond four standard errors."""
+    """Difference of the mean over 8 x 8 pixels, in the block where it is largest beyond four standard errors."""
     block_excess: float
-    """What of that is beyond four standard errors."""
+    """Part of the block's difference that is beyond four standard errors."""
     wrong: float
-    """Of values: the share of pixels that differ visibly."""
+    """Share of pixels that differ visibly; for values."""
     rppm: np.ndarray
     cycles: np.ndarray
     """(H, W, 3) the means over the seeds, row 0 at the bottom."""
@@ -144,7 +144,7 @@ MOST_WRONG = 0.005
 
 
 def shortcomings(row: Row, found: Measurement) -> list[str]:
-    """What of a row is not as it should be, empty when it is."""
+    """List the shortcomings of a row; empty when it is as it should be."""
     wrong = []
     if row.kind is Kind.VALUES and not row.reason and found.wrong > MOST_WRONG:
         wrong.append(f"{found.wrong:.2%} of the pixels differ")

@@ -13,7 +13,7 @@ GROUP = "Light portals"
 SIDE, HEIGHT = 2.0, 2.6
 """Half of the room's width and depth, and its height, meters."""
 LEFT, RIGHT, BOTTOM, TOP = -0.6, 0.8, 0.9, 2.0
-"""Of the window in the wall at X = SIDE."""
+"""Edges of the window in the wall at X = SIDE."""
 ROOM = {"photons": 16384, "photon_path_length": 12}
 
 

@@ -57,7 +57,7 @@ def _ramp(net):
 
 
 def _worn(net):
-    """What edges are: the bevel's normal turned away from the surface's own."""
+    """Return an emission that shows edges, where the bevel's normal turns away from the surface's own."""
     turned = net.out(
         "VectorMath", "Value", {0: net.out("Bevel", inputs={"Radius": 0.2}), 1: net.out("NewGeometry", "Normal")},
         operation="DOT_PRODUCT",

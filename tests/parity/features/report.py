@@ -82,7 +82,7 @@ SOURCES = (
 
 
 def sources_digest() -> str:
-    """Of the files that measurements follow from, in hexadecimal."""
+    """Return the digest of the files that measurements follow from, in hexadecimal."""
     digest = hashlib.sha256()
     for pattern in SOURCES:
         for path in sorted(CHECKOUT.glob(pattern)):
@@ -98,7 +98,7 @@ def keep(file: Path, found: Measurement) -> None:
 
 
 def kept(file: Path) -> Measurement | None:
-    """What keep() wrote, or None."""
+    """Return the measurement that keep() wrote, or None."""
     if not file.exists():
         return None
     with np.load(file) as stored:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the modules of tests of rows share."""
+"""Shared parts of the modules that test rows."""
 
 from collections.abc import Collection
 
@@ -12,7 +12,7 @@ from .rows import Row
 from .suite import ROWS
 
 PART = 0.5
-"""Of the iterations that `make parity` takes: as many as the limits ask for."""
+"""Fraction of the iterations that `make parity` takes: as many as the limits ask for."""
 
 
 def parameters(groups: Collection[str], short: Collection[str]) -> list:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is compared: a row is a feature in a scene of its own."""
+"""Rows of the comparison: a row is a feature in a scene of its own."""
 
 import enum
 from collections.abc import Callable
@@ -36,7 +36,7 @@ class Row:
     block: float = 0.03
     """Largest difference of a block's mean, likewise."""
     settings: dict = field(default_factory=dict)
-    """Of RPPM, in place of the usual ones."""
+    """Settings of RPPM, in place of the usual ones."""
     effort: int = 1
     """How many times the usual iterations and samples it takes to tell anything."""
     warns: bool = False
@@ -81,7 +81,7 @@ def value(
 
 
 def ground_material() -> bpy.types.Material:
-    """That of the ground below what is lit."""
+    """Return the material of the ground below the lit objects."""
     plain, net = material("Ground")
     net.output(net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
     return plain

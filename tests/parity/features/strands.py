@@ -99,7 +99,7 @@ def haired(surface: bpy.types.Material) -> bpy.types.Object:
 def stand(
     surface: bpy.types.Material, make: Callable[[bpy.types.Material], bpy.types.Object], glow: bool = False
 ) -> None:
-    """What ``make`` makes before the camera, lit on the ground, or else alone and unlit, in an empty scene."""
+    """Place what ``make`` makes before the camera, lit on the ground, or else alone and unlit, in an empty scene."""
     plain = ground_material()
     camera((0.4, -4.6, 2.3), (0.0, 0.0, 0.9), 34.0)
     stage.background().inputs["Strength"].default_value = 0.0 if glow else 0.25

@@ -47,7 +47,7 @@ def _black(net):
 
 MAPPED = {"mean": 0.02, "block": 0.05, "reason": "worlds with nodes are looked up in a map 1024 directions wide"}
 MIRRORED = {"kind": Kind.VALUES, "settings": {"camera_path_length": 4}}
-"""Of rows in which only mirrors are seen."""
+"""Options of rows in which only mirrors are seen."""
 
 
 def _environment(mapping=None, projection="EQUIRECTANGULAR", interpolation="Linear"):

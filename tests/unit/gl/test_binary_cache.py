@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is kept of linked programs: nothing but what was kept for the same key, by the same user."""
+"""Cache of linked programs: it returns nothing but what was kept for the same key, by the same user."""
 
 import ctypes
 import logging

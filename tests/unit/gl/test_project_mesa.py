@@ -122,7 +122,7 @@ def test_a_label_has_the_version_of_the_driver(driver, label):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Mesa is the driver on Linux only")
 def test_a_process_takes_the_chosen_mesa():
-    """What is unpacked in this checkout, if anything; else the system's."""
+    """The chosen Mesa is the one that is unpacked in this checkout, if any; else the system's."""
     program = "from rppm_addon.gl.context import device_information as d; print(d().driver_folder); print(d().driver)"
 
     def told(**environment):

@@ -11,7 +11,7 @@ from rppm_addon.scene import Camera, Material, NodeGraph, Scene
 
 
 def targets(thin_wall: bool, **inputs: float) -> np.ndarray:
-    """Of one object with a Principled surface in a much larger scene."""
+    """Return the caustic targets of one object with a Principled surface in a much larger scene."""
     graph = NodeGraph()
     graph.surface = graph.add("bsdf_principled", "bsdf", options={"thin_wall": thin_wall}, roughness=0.0, **inputs)
     return targets_of(graph)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What lights see: the rays of all their photons, within the margin of the texels that these are looked up in."""
+"""Views of lights: they hold the rays of all photons, within the margin of the texels that these are looked up in."""
 
 import math
 

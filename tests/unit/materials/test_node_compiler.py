@@ -215,7 +215,7 @@ def test_a_chain_of_five_thousand_nodes():
 
 
 def test_more_nodes_than_drivers_compile_are_refused(monkeypatch):
-    """Those that are in use: others cost nothing."""
+    """Only nodes that are in use count: others cost nothing."""
     monkeypatch.setattr(compiler, "MOST_CALLS", 50)
     graph = NodeGraph()
     for count in (30, 60):
@@ -288,7 +288,7 @@ def test_rays_that_depend_on_others_are_traced_after_them(normals, expected):
     ("samples", "expected"), [(None, 16), (-3.0, 1), (4.9, 4), (1e9, MOST_NODE_RAYS), ("linked", MOST_NODE_RAYS)]
 )
 def test_no_node_asks_for_more_rays_than_are_traced(samples, expected):
-    """Those that are not traced would count as met."""
+    """Rays that are not traced would count as met."""
     graph = NodeGraph()
     inputs = {} if samples is None else {"samples": samples}
     if samples == "linked":

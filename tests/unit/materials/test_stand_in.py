@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands in for materials whose programs are not compiled yet."""
+"""Stand-ins for materials whose programs are not compiled yet."""
 
 import numpy as np
 import pytest

@@ -24,7 +24,7 @@ def array_bytes(array):
 
 
 def head(text):
-    """Of an array, as its file says it."""
+    """Return the header of an array's file, with this text as its description."""
     data = text.encode() + b"\n"
     return b"\x93NUMPY\x01\x00" + len(data).to_bytes(2, "little") + data
 
@@ -119,7 +119,7 @@ def test_what_would_fill_the_memory_is_not_unpacked(tmp_path, monkeypatch):
 
 
 def test_an_entry_that_hides_its_size(tmp_path):
-    """What the directory of the archive says is all that is unpacked."""
+    """Only as much is unpacked as the directory of the archive says."""
     path = archive(tmp_path / "a.npz", document=np.zeros(1 << 20, np.uint8))
     data = path.read_bytes()
     true = ((1 << 20) + 128).to_bytes(4, "little")
@@ -130,7 +130,7 @@ def test_an_entry_that_hides_its_size(tmp_path):
 
 
 def test_pictures_of_one_color_are_let_in(tmp_path):
-    """What can be packed a thousandfold is not only made to do harm."""
+    """Data that can be packed a thousandfold is not only made to do harm."""
     scene = floor_scene()
     scene.images[:] = [type(full_scene().images[0])("Black", np.zeros((2048, 1024, 4), np.float32))]
     save_scene(scene, tmp_path / "black.npz")

@@ -76,7 +76,7 @@ def test_every_difference_is_seen(scene, change):
 
 
 def test_lists_that_are_known_are_not_walked(scene):
-    """What drawing a viewport costs does not grow with the scene."""
+    """The cost of drawing a viewport does not grow with the scene."""
 
     class Counted(list):
         walks = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is baked, made of the passes of a picture."""
+"""Bake passes, made of the passes of a picture."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from rppm_addon.session.bake_passes import BAKE_TYPES, BakeFilter, BakePass
 from rppm_addon.session.results import Frame
 
 ALL = -1
-"""What Blender's operator hands over when nothing was chosen."""
+"""Pass filter that Blender's operator hands over when nothing was chosen."""
 LOBES = ("Diffuse", "Glossy", "Transmission")
 
 

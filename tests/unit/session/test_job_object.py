@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Windows is told of a job, by the sizes and places that its documentation gives for 64 bits."""
+"""Limits that Windows is told of a job, with the sizes and places that its documentation gives for 64 bits."""
 
 import ctypes
 

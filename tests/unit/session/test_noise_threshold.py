@@ -27,7 +27,7 @@ def test_half_of_the_iterations_are_in_the_half():
 
 @pytest.mark.parametrize("half", [True, False])
 def test_either_half_fills_the_interval_evenly(half):
-    """Of every other point all would lie in one half of it."""
+    """If a half were every other point, all of its points would lie in one half of the interval."""
     points = np.array([van_der_corput(number - 1, 77) for number in range(1, 257) if is_in_half(number) == half])
     for parts in (2, 8, 16):
         counts = np.bincount((parts * points).astype(int), minlength=parts)

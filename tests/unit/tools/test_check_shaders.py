@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What `make lint` says of long functions in shaders."""
+"""Complaints of `make lint` about long functions in shaders."""
 
 from tools.check_shaders import FUNCTION_LINES, long_functions
 

@@ -14,7 +14,7 @@ _LINK = re.compile(r"\]\(([^)\s]+)\)")
 _SOURCE = re.compile(r"`([\w./-]+\.(?:py|comp|glsl|frag|vert|sh))`")
 _CODE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 _NEW_FILE = re.compile(r"^`(\S+)`\n\n```(?!diff)", re.MULTILINE)
-"""What the examples of CONTRIBUTING.md make."""
+"""Pattern of the new files that the examples of CONTRIBUTING.md make."""
 
 
 @cache
@@ -32,7 +32,7 @@ def prose(document: Path) -> str:
 
 @cache
 def anchors(document: Path) -> set[str]:
-    """Of its headings, as GitHub makes them."""
+    """Return the anchors of a document's headings, as GitHub makes them."""
     headings = re.findall(r"^#+ (.+)$", prose(document), re.MULTILINE)
     plain = (re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading) for heading in headings)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in plain}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the lab of drivers makes of what they print. Nothing is compiled."""
+"""Driver lab: its reading of what drivers print. Nothing is compiled."""
 
 import pytest
 

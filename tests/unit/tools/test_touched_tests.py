@@ -61,7 +61,7 @@ def test_what_a_change_asks_for(checkout, changed, expected):
 
 
 def test_rooms_are_there():
-    """What the table names is in the checkout, and a room before the one that it is part of."""
+    """Everything that the table names is in the checkout, and a room comes before the one that it is part of."""
     rooms = list(ROOMS)
     for number, room in enumerate(rooms):
         assert (ROOT / room).is_dir()
