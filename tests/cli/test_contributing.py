@@ -60,8 +60,8 @@ def run(checkout: Path, *command: object) -> str:
     return done.stdout
 
 
-def test_there_are_three():
-    assert len(HOW_TOS) == 3
+def test_there_are_four():
+    assert len(HOW_TOS) == 4
 
 
 @pytest.mark.parametrize("title", HOW_TOS)
