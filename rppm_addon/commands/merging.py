@@ -154,7 +154,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     stills or share iterations, and when iterations are missing.
     """
     found = sorted(
-        ((read_summary(path), path) for path in paths), key=lambda part: (part[0].left_out, part[0].iteration)
+        ((read_summary(path), path) for path in paths), key=lambda part: (part[0].sample_offset, part[0].iteration)
     )
     _check(found, incomplete)
     radiance: Any = 0.0
@@ -163,11 +163,11 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     inspections: dict[str, np.ndarray] = {}
     for summary, pause in _read_parts(found):
         state = pause.state
-        radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.left_out)
-        passes.add(state.passes, state.pass_counts, summary.iteration - summary.left_out)
+        radiance = radiance + state.radiance.astype(np.float64) * (summary.iteration - summary.sample_offset)
+        passes.add(state.passes, state.pass_counts, summary.iteration - summary.sample_offset)
         inspections = inspections or pause.inspections
     summaries = [summary for summary, _ in found]
-    iterations = sum(summary.iteration - summary.left_out for summary in summaries)
+    iterations = sum(summary.iteration - summary.sample_offset for summary in summaries)
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
     warnings = list[str]()
@@ -181,7 +181,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
         sum(summary.seconds for summary in summaries),
         sorted({summary.device for summary in summaries}),
         summaries[-1].radius_meters,
-        [(summary.left_out, summary.iteration, str(path)) for summary, path in found],
+        [(summary.sample_offset, summary.iteration, str(path)) for summary, path in found],
         warnings,
     )
 
@@ -200,13 +200,14 @@ def _check(found: Sequence[tuple[CheckpointSummary, Path]], incomplete: bool) ->
     for summary, path in others:
         refuse_differences(path, summary.render, first.render, str(first_path), "leave it out")
     for (before, before_path), (after, after_path) in pairwise(found):
-        if after.left_out < before.iteration:
+        if after.sample_offset < before.iteration:
             end = min(before.iteration, after.iteration)
             raise CheckpointError(
-                f"{before_path} and {after_path} both have the samples {after.left_out}:{end}; leave one of them out"
+                f"{before_path} and {after_path} both have the samples {after.sample_offset}:{end}; "
+                "leave one of them out"
             )
     ends = [0, *(summary.iteration for summary, _ in found)]
-    gaps = [f"{end}:{summary.left_out}" for end, (summary, _) in zip(ends, found) if summary.left_out > end]
+    gaps = [f"{end}:{summary.sample_offset}" for end, (summary, _) in zip(ends, found) if summary.sample_offset > end]
     if gaps and not incomplete:
         ranges = " and ".join(gaps)
         raise CheckpointError(

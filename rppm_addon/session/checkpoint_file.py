@@ -66,7 +66,7 @@ class CheckpointSummary:
     """Contents of a checkpoint without its arrays."""
 
     render: StillRender
-    left_out: int
+    sample_offset: int
     iteration: int
     photon_counts: PhotonCounts
     photon_noise: NoiseVariances
@@ -80,7 +80,7 @@ class CheckpointSummary:
     @property
     def photons(self) -> int:
         """Emitted in the iterations that are in the film."""
-        return self.photon_counts.emitted(self.left_out, self.iteration - self.left_out)
+        return self.photon_counts.emitted(self.sample_offset, self.iteration - self.sample_offset)
 
 
 def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, seconds: float) -> None:
@@ -150,7 +150,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
 
         passes = settings_of_plain(summary.render.settings).found_passes
         state = RenderState(
-            summary.left_out,
+            summary.sample_offset,
             summary.iteration,
             summary.photon_counts,
             summary.photon_noise,
@@ -262,8 +262,8 @@ def _check(summary: CheckpointSummary) -> None:
     """Raise SceneError, SettingsError or ValueError for numbers that no render has."""
     check_record(summary, CheckpointSummary, finite=True)
     settings_of_plain(summary.render.settings).validate()
-    if not 0 <= summary.left_out < summary.iteration:
-        raise ValueError(f"iterations from {summary.left_out} to {summary.iteration}")
+    if not 0 <= summary.sample_offset < summary.iteration:
+        raise ValueError(f"iterations from {summary.sample_offset} to {summary.iteration}")
     if not summary.photon_counts.numbers:
         raise ValueError("no numbers of photons")
 

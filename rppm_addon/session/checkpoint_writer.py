@@ -38,7 +38,7 @@ class CheckpointRequest:
     """Go on from the checkpoint."""
     part: Path | None = None
     """Written when the render ends or is stopped: what rppm merge takes."""
-    left_out: int = 0
+    sample_offset: int = 0
     """Iterations before the first of the part."""
     source: dict[str, object] = field(default_factory=dict)
     """Facts about the file that the scene comes from, as JSON has them."""
@@ -90,16 +90,16 @@ class CheckpointWriter:
         from .continuation import Continuation
 
         self._render = still_render(scene, self.request.source)
-        summary, left_out = self._summary, self.request.left_out
+        summary, sample_offset = self._summary, self.request.sample_offset
         if summary is not None:
             path = self.request.checkpoint
             refuse_differences(path, summary.render, self._render, "this render", "begin anew with another checkpoint")
-            if summary.left_out != left_out:
+            if summary.sample_offset != sample_offset:
                 raise CheckpointError(
-                    f"{path} begins with iteration {summary.left_out}, not {left_out}; go on with "
-                    f"--samples-range {summary.left_out}:B, or begin anew with another checkpoint"
+                    f"{path} begins with iteration {summary.sample_offset}, not {sample_offset}; go on with "
+                    f"--samples-range {summary.sample_offset}:B, or begin anew with another checkpoint"
                 )
-            self.resumed_iterations = summary.iteration - summary.left_out
+            self.resumed_iterations = summary.iteration - summary.sample_offset
             if iterations is not None and self.resumed_iterations > iterations:
                 raise CheckpointError(
                     f"{path} has {self.resumed_iterations} samples already; ask for as many or more than those, "
@@ -108,7 +108,7 @@ class CheckpointWriter:
             self._seconds_before = summary.seconds
         begin, self._begin = self._begin, None  # arrays that nobody needs from here on
         self._start = time.perf_counter()
-        return Continuation(left_out, begin, self._keep, 60.0 * self.request.minutes)
+        return Continuation(sample_offset, begin, self._keep, 60.0 * self.request.minutes)
 
     def _keep(self, pause: "Pause") -> None:
         """Write the checkpoint; what fails is reported and tried again the next time: the render is worth more."""

@@ -34,7 +34,7 @@ class Pause:
 class Continuation:
     """Where a render begins in the sequence of iterations, and who keeps it."""
 
-    left_out: int = 0
+    sample_offset: int = 0
     """The film begins after so many iterations."""
     begin: Pause | None = None
     """Go on from here instead of from the beginning; its scene and settings are this render's."""

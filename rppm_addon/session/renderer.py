@@ -176,9 +176,9 @@ class SlicedRender:
                     f"the checkpoint is of the device {pause.device}: the picture is not the same bit for bit "
                     "as that of an uninterrupted render"
                 )
-        elif self._continuation.left_out:
+        elif self._continuation.sample_offset:
             self.getting_ready = True
-            yield from mapper.skip(self._continuation.left_out)
+            yield from mapper.skip(self._continuation.sample_offset)
             self.getting_ready = False
         self.between_iterations = True
 

@@ -159,7 +159,7 @@ def test_a_part_is_kept_and_gone_on_with_too(tmp_path, two_floors, uninterrupted
         status, _, errors = rppm_here("render", two_floors, "--samples-range", f"18:{end}", *keep)
         assert status == 0, errors
     summary, pause = read_checkpoint(part)
-    assert (summary.left_out, summary.iteration) == (18, LAST + 1)
+    assert (summary.sample_offset, summary.iteration) == (18, LAST + 1)
     np.testing.assert_array_equal(pause.state.tallies, uninterrupted[1].state.tallies)
     status, _, errors = rppm_here("render", two_floors, "-o", tmp_path / "a.exr", "--checkpoint", part, "--resume")
     assert status == 1

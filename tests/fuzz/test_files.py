@@ -135,7 +135,7 @@ def try_checkpoint(path, way):
     with may_refuse(way, CheckpointError):
         summary, pause = read_checkpoint(path)
         height, width = pause.state.radiance.shape[:2]
-        assert 0 <= summary.left_out < summary.iteration
+        assert 0 <= summary.sample_offset < summary.iteration
         assert summary.render.placement.x + width <= summary.render.placement.width
         assert all(array.shape[:2] == (height, width) for array in pause.state.passes.values())
 

@@ -105,17 +105,17 @@ def test_photons_stay_as_many_where_all_light_is_theirs(mapper):
     assert later[True] < later[False] == scene.photon_count == 96 * 96
 
 
-@pytest.mark.parametrize("left_out", [1, 16, 18])
-def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, states_of_a_whole, left_out):
-    before, whole = states_of_a_whole[left_out], states_of_a_whole[LAST]
+@pytest.mark.parametrize("sample_offset", [1, 16, 18])
+def test_iterations_that_are_left_out_are_those_of_the_whole(mapper, states_of_a_whole, sample_offset):
+    before, whole = states_of_a_whole[sample_offset], states_of_a_whole[LAST]
     mapper.build(busy_room())
-    for _ in mapper.skip(left_out):
+    for _ in mapper.skip(sample_offset):
         pass
     assert mapper.iterations_in_film == 0
     part = run_until(mapper, LAST)
     assert_same_state(part, whole, "iteration", "wide_radius", "radius_factors", "tallies", "learned")
-    assert part.iterations_in_film == LAST - left_out
-    radiance = (left_out * before.radiance.astype(np.float64) + (LAST - left_out) * part.radiance) / LAST
+    assert part.iterations_in_film == LAST - sample_offset
+    radiance = (sample_offset * before.radiance.astype(np.float64) + (LAST - sample_offset) * part.radiance) / LAST
     np.testing.assert_allclose(radiance, whole.radiance, rtol=1e-6, atol=1e-6 * whole.radiance.mean())
     np.testing.assert_array_equal(before.pass_counts + part.pass_counts, whole.pass_counts)
     merged = MergedPasses(FILM_PASSES)

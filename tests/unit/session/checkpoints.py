@@ -21,27 +21,27 @@ def still_render(**values: object) -> StillRender:
     )
 
 
-def pause(left_out: int = 0, iteration: int = 5, learned: bool = True) -> Pause:
+def pause(sample_offset: int = 0, iteration: int = 5, learned: bool = True) -> Pause:
     """Numbers of no meaning, other ones for other iterations; some pixels have found no surface."""
-    random = np.random.default_rng([left_out, iteration])
+    random = np.random.default_rng([sample_offset, iteration])
     radiance, normal, depth, factors = (
         random.random((HEIGHT, WIDTH, *more), np.float32) for more in ((4,), (3,), (), ())
     )
     depth[random.random(depth.shape) < 0.4] = 1e10
-    counts = random.integers(0, iteration - left_out + 1, depth.shape, np.uint32)
+    counts = random.integers(0, iteration - sample_offset + 1, depth.shape, np.uint32)
     normal[counts == 0], depth[counts == 0] = 0.0, 1e10
     counts = np.stack([counts, np.where(depth < 1e10, counts, 0)], axis=-1)
     passes = {"Depth": depth, "Normal": normal}
     tallies, learned_tallies = random.poisson(0.3, (2, CELLS, 2)).astype(np.uint32)
     state = RenderState(
-        left_out, iteration, PhotonCounts((100, 100, 60)), NoiseVariances(160.0, 9.5, 0.25, 1, 0.125),
+        sample_offset, iteration, PhotonCounts((100, 100, 60)), NoiseVariances(160.0, 9.5, 0.25, 1, 0.125),
         0.1 + random.random(), 3.0 + random.random(), radiance, passes, counts, factors, tallies,
         learned_tallies if learned else None, random.random((3, 5), np.float32) if iteration < 16 else None,
     )  # fmt: skip
     return Pause(state, "a device", 0.25)
 
 
-def write_part(path, left_out: int, iteration: int, **values: object):
+def write_part(path, sample_offset: int, iteration: int, **values: object):
     """A part of the still; returns its path."""
-    write_checkpoint(path, still_render(**values), pause(left_out, iteration), 10.0)
+    write_checkpoint(path, still_render(**values), pause(sample_offset, iteration), 10.0)
     return path
