@@ -278,8 +278,8 @@ void take_event(uint index, inout CameraPath path, Closure closure, Event event,
 const float NO_REACH = 1e-30;  // of a ray that goes on and meets nothing
 
 // The next ray of a path that survives. choices: numbers for the lobe, a place on its disk, and what the lobe does.
-void go_on(uint index, CameraPath path, Ray ray, Closure closure, LobeSelection all, bool gathers, float radius,
-           float disk, vec4 choices, uint history) {
+void sample_next_ray(uint index, CameraPath path, Ray ray, Closure closure, LobeSelection all, bool gathers,
+                     float radius, float disk, vec4 choices, uint history) {
     vec3 viewer = -ray.direction;
     float gathering = gathers ? sum(all.stored) : 0.0, total = all.total;
     if (total <= 0.0) return;
@@ -389,5 +389,6 @@ void main() {
     leave_importon(index, closure, path.throughput, -ray.direction, shares.stored, least_radius,
                    bounces > iteration.camera_bounces ? 0.0 : most, u_importon,
                    (gathers ? FINAL_GATHER_ORIGIN : 0u) | (gathered ? FINAL_GATHER_HIT : 0u), history, path.depth);
-    go_on(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe, history);
+    sample_next_ray(index, path, ray, closure, shares, gathers, radius, disk_radius(least_radius, most), u_lobe,
+                    history);
 }

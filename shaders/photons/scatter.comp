@@ -206,8 +206,8 @@ void scatter_differential(uint index, Closure closure, Scattering scattering, ve
 
 // The ray and the flux that a path goes on with, if it does; path_flags are those that it came with. counts: whether a
 // limit counts where it goes straight on; left: how far the ray would have gone then.
-void go_on(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival, vec3 flux,
-           float left) {
+void sample_next_ray(uint index, Closure closure, uint path_flags, bool counts, bool neighbors_known, vec3 arrival,
+                     vec3 flux, float left) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_PHOTONS, parameters.segment, index);
     bool from_light = (path_flags & PHOTON_CASTS_SHADOWS) != 0u;
@@ -282,6 +282,7 @@ void main() {
     photon_differentials[index].before = away;
     if (ends) return;
     float left = ray.maximum_distance - closure.distance;
-    if (may_go_on(closure, depth)) go_on(index, closure, path_flags, counts, neighbors_known, arrival, flux, left);
+    if (may_go_on(closure, depth))
+        sample_next_ray(index, closure, path_flags, counts, neighbors_known, arrival, flux, left);
     else photon_paths[index].deposited = total(carried);
 }
