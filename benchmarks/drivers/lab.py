@@ -51,7 +51,7 @@ class Driver:
     waves: int = 0
     """The most that a program can have."""
     is_newest: bool = False
-    """Whether Mesa is Debian's development release, in the chroot of the window tests; else it is the project's own."""
+    """Choice of Mesa: Debian's development release in the chroot of the window tests, or else the project's own."""
 
 
 def _amd(device: str, waves: int, words: str, compiler: str = "aco", is_newest: bool = False) -> Driver:

@@ -8,8 +8,10 @@ together, in the order of the declarations.
 import re
 from collections.abc import Callable, Mapping
 
-UNIFORM_BINDINGS = {"Parameters": 0, "Iteration": 1}
-"""Bindings of the uniform blocks that a program may have, by name: its own, and that of all stages of an iteration."""
+PARAMETERS, ITERATION = "Parameters", "Iteration"
+"""Names of the uniform blocks that a program may have."""
+UNIFORM_BINDINGS = {PARAMETERS: 0, ITERATION: 1}
+"""Bindings of uniform blocks by name: that of a program's own parameters, and that of all stages of an iteration."""
 
 BLOCK_LAYOUT = "layout(std430)"
 """The layout of storage blocks until they are numbered."""

@@ -11,7 +11,7 @@ and from that follow their allocation, what they take (``memory_bytes``), what t
 storage blocks that they are bound as (``blocks``), and their release. ``self.rays`` is a GrowingBuffer.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
 
 import moderngl
@@ -120,30 +120,6 @@ class BufferList(list[GrowingBuffer]):
         """Free them."""
         for buffer in self:
             buffer.release()
-
-
-class StorageBuffers(Declared[BufferList]):
-    """Buffers of ``item`` that together are larger than a device may allow one to be: ``counts`` gives the items of
-    each."""
-
-    def __init__(self, name: str, item: Record | str, counts: Callable[[Any], Sequence[int]]) -> None:
-        self._name, self._item, self._counts = name, item, counts
-
-    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> BufferList:
-        """Declared.make."""
-        return BufferList(part.make(context, library, sizes, remedy) for part in self._parts(sizes))
-
-    def expected_bytes(self, sizes: object) -> dict[str, int]:
-        """Declared.expected_bytes."""
-        return sum_by_name(part.expected_bytes(sizes) for part in self._parts(sizes))
-
-    def refuse_large(self, context: Context, sizes: object, remedy: str) -> None:
-        """Declared.refuse_large."""
-        for part in self._parts(sizes):
-            part.refuse_large(context, sizes, remedy)
-
-    def _parts(self, sizes: object) -> list[StorageBuffer]:
-        return [StorageBuffer(self._name, self._item, count) for count in self._counts(sizes)]
 
 
 class Part(Declared[Set]):

@@ -17,7 +17,7 @@ import moderngl
 from ..scene.errors import DeviceError
 from .background_compiler import BackgroundCompiler, CompilerContext, EmptyDispatch, can_compile_ahead
 from .binary_cache import BinaryCache
-from .bindings import UNIFORM_BINDINGS
+from .bindings import ITERATION, PARAMETERS, UNIFORM_BINDINGS
 from .buffers import BufferRange
 from .constants import Constants
 from .context import Context
@@ -37,8 +37,6 @@ GROUPS_PER_ROW = 65535
 """Groups of a dispatch along an axis that every device allows."""
 _QUAD = 6
 """Vertices of two triangles: draws are cut between them."""
-ITERATION = "Iteration"
-"""Name of the uniform block that all stages of an iteration share."""
 FIRST_INVOCATION = "first_invocation"
 """The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
 Block = moderngl.Buffer | BufferRange
@@ -116,7 +114,7 @@ class _Program:
             self._texel_buffers.bind(buffers)
         if self._parameters is not None:
             self._parameters.write(self.record.pack(dict(parameters or {})))
-            self._parameters.bind_to_uniform_block(UNIFORM_BINDINGS["Parameters"])
+            self._parameters.bind_to_uniform_block(UNIFORM_BINDINGS[PARAMETERS])
         if self.before_dispatch is not None:
             self.before_dispatch()
             self.before_dispatch = None

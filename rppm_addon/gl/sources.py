@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .bindings import BLOCK_LAYOUT, number_bindings, number_images, numbered_blocks, numbered_textures
+from .bindings import BLOCK_LAYOUT, ITERATION, number_bindings, number_images, numbered_blocks, numbered_textures
 from .constants import Constants
 from .functions import put_together
 from .records import Record
@@ -23,7 +23,7 @@ _INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+))\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _BLOCK = re.compile(r"^((?:\w+\s+)*buffer\s+(\w+))\s*([;{].*)$")
 _PARAMETERS = re.compile(r"\buniform\s+Parameters\s*\{\s*(\w+)\s+\w+\s*;")
-_ITERATION = re.compile(r"\buniform\s+Iteration\b")
+_ITERATION = re.compile(rf"\buniform\s+{ITERATION}\b")
 _LOCAL_SIZE = re.compile(r"local_size_x\s*=\s*(\d+)")
 # "0:12(3): error" (Mesa), "0(12) : error" (NVIDIA), "ERROR: 0:12:" (AMD, Intel, glslang)
 _POSITION = re.compile(r"\b(\d+)(?::|\()(\d+)\b\)?")
@@ -69,7 +69,7 @@ class Source:
 
     @property
     def reads_iteration(self) -> bool:
-        """Whether there is the uniform block Iteration."""
+        """Presence of the uniform block Iteration in the source."""
         return _ITERATION.search(self.text) is not None
 
     @property

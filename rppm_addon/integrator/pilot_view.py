@@ -62,12 +62,17 @@ def pilot_views(camera: Camera, columns: int, rows: int, band_rows: int) -> Iter
         yield view
 
 
-def at_pixels(pilot: np.ndarray, width: int, height: int) -> np.ndarray:
-    """(height * width,): for each of the view's pixels what a pilot view (rows, columns) has there."""
-    rows, columns = pilot.shape
+def enlarged(picture: np.ndarray, width: int, height: int) -> np.ndarray:
+    """Array (height, width, ...) of the pixels of a picture (rows, columns, ...) that are nearest to each pixel."""
+    rows, columns = picture.shape[:2]
     nearest_row = (np.arange(height) * 2 + 1) * rows // (2 * height)
     nearest_column = (np.arange(width) * 2 + 1) * columns // (2 * width)
-    return pilot[nearest_row[:, None], nearest_column].reshape(-1)
+    return picture[nearest_row[:, None], nearest_column]
+
+
+def at_pixels(pilot: np.ndarray, width: int, height: int) -> np.ndarray:
+    """(height * width,): for each of the view's pixels what a pilot view (rows, columns) has there."""
+    return enlarged(pilot, width, height).reshape(-1)
 
 
 def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> PilotView:

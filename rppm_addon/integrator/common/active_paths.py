@@ -22,9 +22,11 @@ ACTIVE_PATHS_HEADER = Record(
     groups="uvec3",
     unused2="uint",
 )
-"""How a list of paths begins (active_paths.py): their ``count``, and the ``groups`` of a dispatch over them. It is laid
-out as a range of shaders/resolve/ranges.glsl, ``first`` being the word where the numbers begin: a list stands for the
-order of the hits where one program resolves them all."""
+"""Header of a list of paths: their ``count``, and the ``groups`` of a dispatch over them.
+
+The header is laid out as a range of shaders/resolve/ranges.glsl, and ``first`` is the word where the numbers of the
+paths begin. A list can therefore stand for the order of the hits where one program resolves them all.
+"""
 StorageBlock("KeptPaths", "ActivePathsHeader kept; uint kept_paths[];")
 
 

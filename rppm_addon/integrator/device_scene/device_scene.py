@@ -7,8 +7,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ...gl.bindings import ITERATION
 from ...gl.context import Context
-from ...gl.programs import ITERATION, Bindable, ProgramLibrary
+from ...gl.programs import Bindable, ProgramLibrary
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """UpdatePPMParams: running means of radiance and of the passes, per pixel."""
 
-from bisect import bisect_right
 from collections.abc import Mapping
 
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import Part, StorageBuffer, StorageBuffers
+from ...gl.buffer_sets import Part, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import Bindable, ProgramLibrary
@@ -21,9 +20,6 @@ from ..device_scene.stage_context import StageContext
 from .cryptomatte import Cryptomatte
 from .events import BandEvents, Listener
 from .motion_vectors import MotionVectors
-
-StorageBlock("PassCounts", "uvec2 pass_counts[];")
-
 
 Record(
     "PassParameters",
@@ -43,6 +39,7 @@ StorageBlock("PhotonLight", "vec4 photon_light[];")
 """Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
 StorageBlock("GroupValues", "float group_values[];")
 """Light of each pixel of a band, three channels for each light group."""
+StorageBlock("PassCounts", "uvec2 pass_counts[];")
 StorageBlock("PassValues", "float pass_values[];")
 """Values of a band's passes, one pass after the other (shaders/film/passes.glsl)."""
 Constants(
@@ -66,12 +63,6 @@ def _show_seen_light(sizes: StageSizes) -> bool:
 
 def _channels(sizes: StageSizes) -> int:
     return sum(len(entry.channels) for entry in sizes.passes if entry in FILM_PASSES)
-
-
-def _pass_values(sizes: StageSizes) -> list[int]:
-    """Return the number of pass values of each band. One buffer for a large picture would be more than some drivers
-    allow."""
-    return [band.pixel_count * _channels(sizes) for band in sizes.bands]
 
 
 def _looks(sizes: StageSizes) -> bool:
@@ -105,7 +96,7 @@ class Film(Listener):
     memory_group = "passes"
     remedy = "lower the resolution"
     _radiance = FilmBuffer("film", "vec4", together=True)
-    _values = StorageBuffers("pass values", "float", _pass_values)
+    _values = FilmBuffer("pass values", "float", _channels)
     _photon_light = FilmBuffer("photons' part of the film", "vec4", lambda sizes: sizes.is_filtered, together=True)
     _counts = FilmBuffer("pass counts", "uvec2", _looks)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths, block="PassPaths")
@@ -125,7 +116,6 @@ class Film(Listener):
         self._accumulate_aovs = library.compute("film/aovs.comp") if aov_channels(sizes) else None
         self._aov_channels = aov_channels(sizes)
         self.width, self.height, self._bands = sizes.width, sizes.height, sizes.bands
-        self._first_rows = [band.first_row for band in sizes.bands]
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Requested passes that passes.comp writes."""
         self._passes = pass_bits(sizes)
@@ -172,7 +162,6 @@ class Film(Listener):
                 band.pixel_count,
                 {
                     **context.blocks,
-                    **sums.blocks,
                     **events.importons.blocks,
                     "Film": self._radiance.of(band),
                     "PhotonLight": self._photon_light.of(band),
@@ -194,9 +183,7 @@ class Film(Listener):
 
     def blocks_of(self, band: Band) -> dict[str, Bindable]:
         """Storage blocks of a band's passes: those of shaders/film/passes.glsl, and GroupValues."""
-        number = bisect_right(self._first_rows, band.first_row) - 1
-        values = self._values[number].buffer
-        return {"PassValues": values, "GroupValues": self._group_values.of(band)}
+        return {"PassValues": self._values.of(band), "GroupValues": self._group_values.of(band)}
 
     def _parameters(self, context: StageContext, band: Band, segment: int) -> dict[str, object]:
         mist = context.scene.world.mist

@@ -95,7 +95,7 @@ class LightGroups(Listener):
             return
         context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light groups"):
-            light = {**context.blocks, **sums.blocks, **self.blocks}
+            light = {**context.blocks, **self.blocks}
             for group in range(self._groups):
                 parameters = self._parameters() | {
                     "group": group,
@@ -104,8 +104,8 @@ class LightGroups(Listener):
                 }
                 self._taken.clear()
                 if context.gathers:
-                    found = {**final_gather.blocks, "GatherRadiances": self._found.buffer}
-                    self._programs["found"].run(band.pixel_count, {**light, **found}, parameters)
+                    found = {**light, "GatherRadiances": self._found.buffer}
+                    self._programs["found"].run(band.pixel_count, found, parameters)
                     final_gather.share_found(context, self._found.buffer, self._taken.buffer, band, events.radii)
                 self._programs["accumulate"].run(
                     band.pixel_count,

@@ -101,7 +101,7 @@ class LightPasses(Listener):
         context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light passes"):
             parameters = self._parameters(band) | {"quantum": sums.quantum}
-            blocks = {**context.blocks, **sums.blocks, **events.importons.blocks, **final_gather.blocks, **self.blocks}
+            blocks = {**context.blocks, **events.importons.blocks, **self.blocks}
             self._programs["photons"].run(band.pixel_count, blocks, parameters)
             if not context.gathers:
                 return

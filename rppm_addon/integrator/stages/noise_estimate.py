@@ -94,7 +94,7 @@ class NoiseEstimate(Listener):
         with events.context.timers.stage("noise"):
             self._add.run(
                 band.pixel_count,
-                {**sums.blocks, **events.importons.blocks, "HalfMeans": self._half.of(band)},
+                {**events.context.blocks, **events.importons.blocks, "HalfMeans": self._half.of(band)},
                 {
                     "count": band.pixel_count,
                     "quantum": sums.quantum,

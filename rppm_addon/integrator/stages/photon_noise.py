@@ -85,7 +85,7 @@ class PhotonNoise(Listener):
         with context.timers.stage("learning"):
             self._split.run(
                 band.pixel_count,
-                {**importons.blocks, **sums.blocks, **gather.blocks, **self.blocks},
+                {**context.blocks, **importons.blocks, **self.blocks},
                 {**parameters, "count": band.pixel_count},
             )
             if context.gathers:

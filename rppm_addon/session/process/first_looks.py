@@ -9,6 +9,7 @@ from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
 from ...gl.sources import ShaderError
 from ...integrator.first_look import FirstLook
+from ...integrator.pilot_view import enlarged
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
@@ -51,7 +52,7 @@ class FirstLooks:
         width, height = scene.camera.resolution
         level = min(1.0, math.sqrt(MOST_PIXELS / (width * height)))
         try:
-            return enlarged(self.of(mapper).draw(at_level(scene, level)), height, width)
+            return enlarged(self.of(mapper).draw(at_level(scene, level)), width, height)
         except DeviceLostError:
             raise
         except (RppmError, ShaderError):
@@ -63,11 +64,3 @@ class FirstLooks:
         if self._look is not None:
             self._look.release()
             self._look = None
-
-
-def enlarged(picture: np.ndarray, height: int, width: int) -> np.ndarray:
-    """A picture of shape (rows, columns, channels) with each pixel repeated up to a height and a width, in pixels."""
-    rows, columns = picture.shape[:2]
-    if (rows, columns) == (height, width):
-        return picture
-    return picture[np.arange(height)[:, None] * rows // height, np.arange(width) * columns // width]

@@ -85,7 +85,7 @@ def test_a_factor_multiplies_the_radius_of_its_pixel(mapper):
         mapper.iterate()
         count = mapper.stages.bands[-1].pixel_count
         importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count)
-        assert (importons["gathers"] != GatherFlag.FINAL_GATHER_HIT).all()
+        assert (importons["gathers"] != GatherFlag.HIT).all()
         seen[adaptive] = factors[-count:], importons["radius"]
     (ones, plain), (factors, radii) = seen[False], seen[True]
     assert (ones == 1.0).all() and np.ptp(factors) > 0.5 and np.count_nonzero(plain) > 50

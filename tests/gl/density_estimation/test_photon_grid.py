@@ -161,11 +161,11 @@ def test_who_takes_what(device):
     photons["flags"] |= np.array(
         [0, PhotonFlag.AFTER_ROUGH_BOUNCE, PhotonFlag.AFTER_ROUGH_BOUNCE | PhotonFlag.INDIRECT], np.uint32
     )
-    both = GatherFlag.FINAL_GATHER_HIT | GatherFlag.FINAL_GATHER_ORIGIN
-    for gathers, expected in ((0, 2), (GatherFlag.FINAL_GATHER_ORIGIN, 1), (GatherFlag.FINAL_GATHER_HIT, 2), (both, 1)):
+    both = GatherFlag.HIT | GatherFlag.ORIGIN
+    for gathers, expected in ((0, 2), (GatherFlag.ORIGIN, 1), (GatherFlag.HIT, 2), (both, 1)):
         importons = importons_at(np.zeros((2, 3), np.float32), np.array([0.1, 0.0], np.float32), gathers)
         contributed, diffused, any_light = device.gather(photons, importons, SplatRadii(0.1, 0.2))
-        np.testing.assert_array_equal(contributed, [True, True, not gathers & GatherFlag.FINAL_GATHER_ORIGIN])
+        np.testing.assert_array_equal(contributed, [True, True, not gathers & GatherFlag.ORIGIN])
         np.testing.assert_array_equal(diffused, [expected, 0])
         np.testing.assert_array_equal(any_light, [True, False])
     nothing = importons_at(np.zeros((2, 3), np.float32), np.zeros(2))

@@ -42,7 +42,7 @@ def brute_force(importons, photons, wide):
         geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["diffuse_normal"][None])[0]
         near = (distance2 < radius**2) & (normals @ geometric > 0.7) & (abs(offset @ geometric) <= 0.35 * radius)
         near &= (stored["direction"] @ shading > 0) & ~shut_off(stored, normals, offset, geometric, radius)
-        if importon["gathers"] & GatherFlag.FINAL_GATHER_ORIGIN:
+        if importon["gathers"] & GatherFlag.ORIGIN:
             near &= ~indirect
         cosine = (stored["direction"][near] * normals[near]).sum(1)
         correction = np.minimum(abs(stored["direction"][near] @ shading) / np.maximum(abs(cosine), 1e-5), 4)
@@ -130,11 +130,11 @@ def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
     mapper.iterate()
     first, last = seen[:2]
     photons, wide = mapper.read_photons().ravel(), mapper.splat_radii[1]
-    assert (first["gathers"][first["radius"] > 0] == GatherFlag.FINAL_GATHER_ORIGIN).all()
+    assert (first["gathers"][first["radius"] > 0] == GatherFlag.ORIGIN).all()
     parts = [brute_force(importons, photons, wide) for importons in (first, last)]
     sums = mapper.stages.density_estimator.sums
     got = sums.read(count) * sums.quantum
-    found = (last["gathers"][:, None] & GatherFlag.FINAL_GATHER_HIT) != 0
+    found = (last["gathers"][:, None] & GatherFlag.HIT) != 0
     assert (last["gathers"] >> PHOTON_FACTOR_SHIFT).max() > 1  # of some disks a part lies off the surface
     assert all((part > 0).any(axis=1).mean() > 0.5 for part in parts)
     # What the ray finds is summed apart; behind the mirror the last segment is the first that stores.

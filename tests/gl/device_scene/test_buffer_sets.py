@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import moderngl
 import pytest
 
-from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer, StorageBuffers
+from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer
 from rppm_addon.gl.buffers import SMALLEST
 from rppm_addon.gl.context import Context
 from rppm_addon.integrator.common.active_paths import PathList
@@ -87,7 +87,7 @@ def test_the_remedy_is_the_set_s(context, library):
 
 class ListedAndMore(BufferSet):
     remedy = "carry fewer"
-    parts = StorageBuffers("stones", "vec4", lambda sizes: [sizes.rocks, sizes.rocks])
+    stones = StorageBuffer("stones", "vec4", lambda sizes: sizes.rocks)
     listed = PathList("sticks", lambda sizes: sizes.sticks, to_keep=True)
     inner = Part(Inner)
 
@@ -96,7 +96,7 @@ def test_what_is_too_large_is_refused_before_anything_is_made(context, monkeypat
     limit = context.storage_block_limit
     ListedAndMore.refuse_large(context, Sizes(1, 1))
     most = limit // RAY.size
-    ListedAndMore.refuse_large(context, Sizes(most, 1))  # stones are smaller than rays, and each part counts alone
+    ListedAndMore.refuse_large(context, Sizes(most, 1))  # stones are smaller than rays
     for sizes, name in (
         (Sizes(most + 1), "rocks"),
         (Sizes(limit // 16 + 1), "stones"),

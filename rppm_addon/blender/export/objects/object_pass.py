@@ -101,7 +101,7 @@ class _Owner:
     visibility: RayVisibility
     """Visibility of the objects that it multiplies, combined with the visibility of each object itself."""
     holdout: bool
-    """Whether the objects that it multiplies are holdouts, in place of their own settings, as in Cycles."""
+    """Holdout flag of the objects that the owner multiplies, in place of their own flags, as in Cycles."""
     shadow_catcher: bool
     has_particles: bool
 

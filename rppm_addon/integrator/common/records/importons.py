@@ -42,15 +42,13 @@ StorageBlock("Importons", "Importon importons[];")
 class GatherFlag(enum.IntFlag):
     """Flags of the photons that an importon gathers; without the first flag it takes all photons."""
 
-    FINAL_GATHER_ORIGIN = 1
-    """It leaves indirect photons to the path, which goes on for them."""
-    FINAL_GATHER_HIT = 2
-    """It stands where that led, and counts for the vertex that the path set out from."""
+    ORIGIN = 1
+    """The importon leaves indirect photons to its path, which sets out to gather there."""
+    HIT = 2
+    """The importon stands where a gathering ray ended, and counts for the vertex that the ray set out from."""
 
 
 PHOTON_FACTOR_SHIFT = 8
 """Above the flags, what global photons are multiplied by; 0 is 1."""
 Constants("PhotonFactor", PHOTON_FACTOR_SHIFT=PHOTON_FACTOR_SHIFT)
-Constants(
-    "GatherFlags", FINAL_GATHER_ORIGIN=GatherFlag.FINAL_GATHER_ORIGIN, FINAL_GATHER_HIT=GatherFlag.FINAL_GATHER_HIT
-)
+Constants("GatherFlags", FINAL_GATHER=GatherFlag)

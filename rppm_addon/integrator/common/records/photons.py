@@ -33,6 +33,6 @@ StorageBlock("Photons", "Photon photons[];")
 StorageBlock(
     "StoredPhotons", "uint stored_count; uint global_photon_count; uint indirect_count; uint stored_photons[];"
 )
-"""How many photons are stored, how many of these are global and indirect ones, and the numbers of the stored ones."""
+"""Numbers of the stored photons, behind the counts of all of them, of the global and of the indirect ones."""
 StorageBlock("PhotonGroups", "uint photon_groups[];")
 """Light group numbers of the photons that left the lights."""
