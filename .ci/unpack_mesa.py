@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-from rppm_addon.gl.project_mesa import (  # noqa: E402
+from rppm_addon.gl.context.project_mesa import (  # noqa: E402
     FOLDER,
     RELEASE_FILE,
     VARIABLE,

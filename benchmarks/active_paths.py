@@ -12,8 +12,8 @@ from unittest import mock
 import numpy as np
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import load_scene

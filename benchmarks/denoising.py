@@ -17,8 +17,8 @@ from rppm_addon.denoising.places import library_places
 from rppm_addon.scene import Scene, load_scene
 from rppm_addon.scene.passes import DENOISING_ALBEDO, DENOISING_NORMAL
 from rppm_addon.scene.settings import DenoisingInputPasses, DenoisingPrefilter, RenderSettings
-from rppm_addon.session.renderer import Renderer
-from rppm_addon.session.results import Frame
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.render.results import Frame
 
 from .peers.metrics import caustic_mask, displayed, exposure_of, flip, gradients_kept, relative_mse
 

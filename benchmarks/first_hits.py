@@ -10,8 +10,8 @@ import sys
 
 import numpy as np
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import FirstPhotonHits, LightKind, Scene
 

@@ -25,12 +25,12 @@ import rppm_addon
 from rppm_addon.blender.export import export_scene
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.denoising.denoiser import Denoiser
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.scene import Scene
-from rppm_addon.session.process.known_programs import KnownPrograms
-from rppm_addon.session.process.rendering import Rendering
-from rppm_addon.session.process.viewport_renderer import ViewportRenderer
+from rppm_addon.session.placeholders.known_programs import KnownPrograms
+from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
+from rppm_addon.session.worker.rendering import Rendering
 
 from . import ROOT
 

@@ -19,9 +19,9 @@ import bpy
 from support.held import HeldByFrame
 
 import rppm_addon
-from rppm_addon.gl.context import Context
+from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.device_scene.acceleration import Acceleration
-from rppm_addon.session.observers import RenderObserver, observing
+from rppm_addon.session.render.observers import RenderObserver, observing
 
 from .machine import Clock, describe
 
@@ -118,7 +118,7 @@ def frame_times(size: int, side: int, frames: int, iterations: int, persistent: 
     times = Times()
     builds = []
     build = Acceleration.build
-    from rppm_addon.blender import engine
+    from rppm_addon.blender.engine import engine
 
     render = engine.render_final
 

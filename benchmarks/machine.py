@@ -13,7 +13,7 @@ from pathlib import Path
 import moderngl
 import numpy as np
 
-from rppm_addon.gl.context import Context
+from rppm_addon.gl.context.context import Context
 from rppm_addon.processors import usable_cores
 
 from . import ROOT

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene, load_scene
 

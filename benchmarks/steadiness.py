@@ -21,8 +21,8 @@ import numpy as np
 
 import rppm_addon
 from rppm_addon.blender.export import export_scene
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 

@@ -11,12 +11,11 @@ import sys
 import traceback
 from collections.abc import Sequence
 
-from .commands.arguments import parser
+from .commands.blend_files.fluid_domains import end_before_blender_aborts
 from .commands.compiling import compile_programs
 from .commands.farm.command import farm
-from .commands.fluid_domains import end_before_blender_aborts
-from .commands.interruption import INTERRUPTED
-from .commands.options import (
+from .commands.options.arguments import parser
+from .commands.options.options import (
     is_blend,
     load_blend_or_saved,
     refuse_shared_files,
@@ -25,17 +24,18 @@ from .commands.options import (
     write_json,
 )
 from .commands.picture_set import described
-from .commands.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
 from .commands.recorder import apply_settings
 from .commands.rendering import render
-from .commands.terminal import LineFormatter, printable
+from .commands.terminal.interruption import INTERRUPTED
+from .commands.terminal.progress_bar import LINE_SECONDS, BarLogHandler, ProgressBar
+from .commands.terminal.texts import LineFormatter, printable
 from .denoising.denoiser import Denoiser
 from .denoising.places import library_places
-from .gl.devices import Device, list_devices
+from .gl.context.devices import Device, list_devices
 from .pictures import PictureError, make_folder
 from .scene import RenderSettings
+from .scene.common.quantities import count_text
 from .scene.errors import DenoiserError, DeviceError, RppmError, SettingsError, unforeseen
-from .scene.quantities import count_text
 
 
 def main(arguments: Sequence[str] | None = None, line_seconds: float = LINE_SECONDS) -> int:
@@ -102,7 +102,7 @@ def _merge(options: argparse.Namespace, bar: ProgressBar) -> int:
 
 
 def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
-    from .commands import blend_file
+    from .commands.blend_files import blend_file
     from .scene import save_scene
 
     if not is_blend(options.file):
@@ -125,7 +125,7 @@ def _export(options: argparse.Namespace, bar: ProgressBar) -> int:
 
 def _inspect(options: argparse.Namespace, bar: ProgressBar) -> int:
     from .commands.inspection import inspection_lines, write_inspection
-    from .session.renderer import Renderer
+    from .session.render.renderer import Renderer
 
     settings, data_values = split_values(options.values)
     apply_settings(RenderSettings(), settings)
@@ -165,7 +165,7 @@ def _print_devices(devices: Sequence[Device], used: int | None) -> None:
 
 
 def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
-    from .gl.context import device_information, open_others
+    from .gl.context.context import device_information, open_others
 
     settings, data_values = split_values(options.values)
     if options.scene is None and (settings or data_values or options.resolution or options.frame is not None):
@@ -200,7 +200,7 @@ def _info(options: argparse.Namespace, bar: ProgressBar) -> int:
     report: dict[str, object] = {"blender": blender, "device": dataclasses.asdict(device), "denoiser": denoiser}
     if options.scene is not None:
         from .commands.memory import memory_lines
-        from .session.renderer import Renderer
+        from .session.render.renderer import Renderer
 
         scene = load_blend_or_saved(options.scene, options, settings, data_values)
         with Renderer() as renderer:

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from .scene import whole_files
-from .scene.declared import declared
+from .scene.common import whole_files
+from .scene.common.declared import declared
 from .scene.errors import RppmError, SceneError
 from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
 
@@ -269,7 +269,7 @@ def _planes(array: np.ndarray) -> list[np.ndarray]:
 
 @contextlib.contextmanager
 def renamed_when_whole(path: str | Path) -> Iterator[str]:
-    """As scene/whole_files.py has it, for pictures. Raises PictureError."""
+    """As scene/common/whole_files.py has it, for pictures. Raises PictureError."""
     try:
         with whole_files.renamed_when_whole(path) as temporary:
             yield temporary

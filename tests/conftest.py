@@ -30,7 +30,7 @@ def pytest_configure(config):
     config.pluginmanager.register(PlainRoot())
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
     if workers > 1:
-        from rppm_addon.gl import background_compiler
+        from rppm_addon.gl.programs import background_compiler
 
         usable_cores = background_compiler.usable_cores
         background_compiler.usable_cores = lambda: max(1, usable_cores() // workers)

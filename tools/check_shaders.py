@@ -19,8 +19,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 from support.shader_declarations import Variant, variants  # noqa: E402
 
-from rppm_addon.gl.sources import SHADER_FOLDER, ShaderError  # noqa: E402
-from rppm_addon.gl.texel_buffers import IMAGES_FOR_LARGE  # noqa: E402
+from rppm_addon.gl.buffers.texel_buffers import IMAGES_FOR_LARGE  # noqa: E402
+from rppm_addon.gl.programs.sources import SHADER_FOLDER, ShaderError  # noqa: E402
 
 COLUMNS = 120
 FUNCTION_LINES = 60
@@ -49,7 +49,7 @@ def long_functions(text: str) -> list[tuple[str, int, int]]:
 
 
 def numbers() -> list[str]:
-    """Declarations with a number, which follows from their order (rppm_addon/gl/bindings.py)."""
+    """Declarations with a number, which follows from their order (rppm_addon/gl/programs/bindings.py)."""
     return [
         f"{path.relative_to(SHADER_FOLDER).as_posix()}:{number}: leave the binding out; Python binds by name"
         for path in sorted(SHADER_FOLDER.rglob("*.*"))
@@ -75,7 +75,7 @@ LARGE = {
     *("BvhNodes", "OverlapJobs", "NewFragments", "OldFragments", "BinnedFragments"),
     *("Photons", "Closures", "SortedPhotons"),
 }
-"""Blocks whose buffers may be larger than a storage block (gl/buffers.py)."""
+"""Blocks whose buffers may be larger than a storage block (gl/buffers/buffers.py)."""
 BY_RANGES = {
     ("geometry/gather.comp", "Triangles"),
     ("geometry/gather.comp", "Attributes"),

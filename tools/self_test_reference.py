@@ -6,7 +6,7 @@ import sys
 import numpy as np
 
 from rppm_addon.self_test.checks import REFERENCE, differences, reference, reference_scene
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 SAMPLES = 4096
 

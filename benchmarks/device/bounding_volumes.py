@@ -6,7 +6,7 @@ import moderngl
 import numba
 import numpy as np
 
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
 
 Record("BoundingVolumesRange", first_ray="uint", end_ray="uint")
 

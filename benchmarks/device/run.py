@@ -13,8 +13,8 @@ import sys
 import time
 from pathlib import Path
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.scene.errors import RppmError
 
 from .. import ROOT

@@ -15,8 +15,8 @@ import numpy as np
 from deep_cubemap_scenes import room_with_meshes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.records.rays import HIT
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rppm_addon.gl import project_mesa
+from rppm_addon.gl.context import project_mesa
 
 from . import statistics
 from .compile import MARK

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from rppm_addon.gl.sources import Source
+from rppm_addon.gl.programs.sources import Source
 from tests.support.shader_declarations import Variant, variants
 
 

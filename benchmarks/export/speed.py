@@ -21,13 +21,13 @@ import numpy as np
 
 import rppm_addon
 from rppm_addon.blender.export import SceneSync, export_scene
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Camera, Scene
-from rppm_addon.session.process.arrays import pack, unpack
-from rppm_addon.session.process.protocol import frame_message
-from rppm_addon.session.process.transfer import SceneReceiver, SceneSender
+from rppm_addon.session.transport.arrays import pack, unpack
+from rppm_addon.session.transport.protocol import frame_message
+from rppm_addon.session.transport.transfer import SceneReceiver, SceneSender
 
 from ..machine import Clock, describe
 from .scenes import SCENES

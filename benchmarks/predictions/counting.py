@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rppm_addon.gl.records import KINDS
+from rppm_addon.gl.buffers.records import KINDS
 
 UNIT = 15
 """Image unit of the texel buffer that takes the counts."""
@@ -41,7 +41,7 @@ class Site:
 def counted(text: str, first: int) -> tuple[str, list[Site]]:
     """A shader that counts in the texel buffer's words from ``first`` on, one for each of the sites.
 
-    The text is expanded (gl/sources.py), without texel buffers of its own.
+    The text is expanded (gl/programs/sources.py), without texel buffers of its own.
     """
     text = _COMMENT.sub("", text)
     arrays, words = _members(text)

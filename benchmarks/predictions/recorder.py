@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rppm_addon.gl import programs
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.sources import Source
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs import programs
+from rppm_addon.gl.programs.sources import Source
 
 from .counting import UNIT, Site, counted
 

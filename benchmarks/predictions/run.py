@@ -14,8 +14,8 @@ import tempfile
 from pathlib import Path
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DensityEstimation, RenderSettings, Scene, load_scene
 from rppm_addon.scene.errors import RppmError

@@ -4,22 +4,10 @@
 import sys
 
 from ..wheel_libraries import add_wheel_libraries
-from . import (
-    background,
-    broken_frames,
-    engine,
-    frame_reuse,
-    operators,
-    panels,
-    preferences,
-    preparing,
-    properties,
-    renderer_process,
-    renderer_thread,
-    reports,
-    self_test,
-)
+from . import background, operators, panels, preferences, properties, reports, self_test
+from .engine import broken_frames, engine, frame_reuse, preparing
 from .export.images import kept_images
+from .render_client import renderer_process, renderer_thread
 
 
 def register() -> None:

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from ..materials import dispersion
-from .export.nodes.links import node_tree
+from .export.shading.nodes.links import node_tree
 
 _GLASSES = {"BSDF_GLASS", "BSDF_REFRACTION"}
 _SUMS = {"ADD_SHADER", "MIX_SHADER"}

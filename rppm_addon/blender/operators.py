@@ -6,8 +6,9 @@ import contextlib
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from ..session.process.client import ProcessState
-from . import colored_glasses, panels, renderer_process
+from ..session.transport.client import ProcessState
+from . import colored_glasses, panels
+from .render_client import renderer_process
 from .subjects import SubjectKind, select
 
 START_SHOWN_EVERY = 0.25

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..denoising.places import REMEDY
-from ..scene.quantities import bytes_text
-from ..session.process.client import ProcessState
-from . import renderer_process, self_test
-from .chosen_device import ChosenDevice, device_here, device_of_environment, with_device_here
-from .denoising_libraries import denoising_libraries, root_package
+from ..scene.common.quantities import bytes_text
+from ..session.transport.client import ProcessState
+from . import self_test
 from .panels.base import letters_across, paragraph, reading
+from .render_client import renderer_process
+from .render_client.chosen_device import ChosenDevice, device_here, device_of_environment, with_device_here
+from .render_client.denoising_libraries import denoising_libraries, root_package
 
 if TYPE_CHECKING:
-    from ..gl.context import DeviceInformation
+    from ..gl.context.context import DeviceInformation
 
 _MODULES = ("numpy", "moderngl", "glcontext")
 """Modules that the renderer process imports besides this package."""

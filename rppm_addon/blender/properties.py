@@ -15,7 +15,7 @@ from ..scene import RenderSettings
 from ..scene.passes import COMBINED, FILM_PASSES, PASSES
 from ..scene.setting_info import SettingInfo, settings_of
 from ..scene.settings import MOST_PHOTONS, DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
-from ..session.bake_passes import BAKE_TYPES
+from ..session.render.bake_passes import BAKE_TYPES
 
 
 def _edited(owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:

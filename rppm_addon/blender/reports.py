@@ -6,7 +6,7 @@ import threading
 from dataclasses import dataclass, field, replace
 
 from ..scene import RenderSettings, Scene
-from ..session.process.sessions import SessionStatus
+from ..session.transport.sessions import SessionStatus
 
 FINALS_KEPT = 5
 """Final renders of a scene, to compare."""

@@ -9,7 +9,8 @@ from pathlib import Path
 import bpy
 
 from .. import self_test
-from . import panels, renderer_process
+from . import panels
+from .render_client import renderer_process
 
 _SCRIPT = Path(self_test.__file__).with_name("run.py")
 _ASKED_EVERY = 0.5

@@ -10,14 +10,14 @@ from typing import Any
 
 from ..pictures import PictureError
 from ..scene.errors import RppmError
-from .blend_file import BlendFile, BlendRequest, opened_blend_file
-from .frame_numbers import path_of_frame
-from .interruption import Interruption
+from .blend_files.blend_file import BlendFile, BlendRequest, opened_blend_file
+from .options.frame_numbers import path_of_frame
 from .picture_files import is_whole
 from .picture_set import recorded_pictures
-from .progress_bar import PartBar, ProgressBar
 from .recorder import RenderRequest
-from .terminal import printable
+from .terminal.interruption import Interruption
+from .terminal.progress_bar import PartBar, ProgressBar
+from .terminal.texts import printable
 
 
 @dataclass

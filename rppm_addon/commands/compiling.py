@@ -6,9 +6,9 @@ import dataclasses
 import time
 
 from ..scene import RenderSettings, Scene
-from .options import load_blend_or_saved, split_values
-from .progress_bar import ProgressBar
+from .options.options import load_blend_or_saved, split_values
 from .recorder import apply_settings
+from .terminal.progress_bar import ProgressBar
 
 _LONGEST_SIDE = 64
 """Pixels, so that rendering takes next to no time beside compiling, and yet GPUs try both routes of density
@@ -20,7 +20,7 @@ _ITERATIONS = 2
 
 def compile_programs(options: argparse.Namespace, bar: ProgressBar) -> int:
     """Do it; returns the exit status."""
-    from ..session.renderer import Renderer
+    from ..session.render.renderer import Renderer
 
     settings, data_values = split_values(options.values)
     apply_settings(RenderSettings(), settings)

@@ -13,15 +13,15 @@ from ..denoising.denoiser import Denoiser
 from ..denoising.places import library_places
 from ..pictures import FilePicture, PictureName, refuse_spoiled, standard_view, write_multilayer_exr
 from ..scene.errors import CheckpointError
-from ..scene.fingerprint import settings_of_plain
-from ..session.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
-from ..session.checkpoint_writer import picture_of, pictures_of, refuse_differences
-from ..session.continuation import Pause
-from ..session.denoised_pictures import finished_frame
-from ..session.frame_passes import frame_passes
-from ..session.merged_passes import MergedPasses
-from ..session.renderer import exposed
-from ..session.results import Frame
+from ..scene.storage.fingerprint import settings_of_plain
+from ..session.checkpoints.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
+from ..session.checkpoints.checkpoint_writer import picture_of, pictures_of, refuse_differences
+from ..session.checkpoints.continuation import Pause
+from ..session.render.denoised_pictures import finished_frame
+from ..session.render.frame_passes import frame_passes
+from ..session.render.merged_passes import MergedPasses
+from ..session.render.renderer import exposed
+from ..session.render.results import Frame
 from .picture_files import write_png
 from .picture_set import described, metadata_of, path_of_picture
 from .recorder import picture_metadata, write_frame
@@ -76,7 +76,7 @@ class MergedStill:
         if not self.render.source.get("blend"):
             write_png(path, standard_view(self.frame.combined))
             return
-        from .blend_file import BlendRequest, save_view
+        from .blend_files.blend_file import BlendRequest, save_view
 
         request = BlendRequest.from_plain(self.render.source["blend"])
         if not request.path.is_file():

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 from ..pictures import FilePicture, PictureName, refuse_spoiled, write_multilayer_exr
 from ..scene import Scene
-from ..session.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
-from ..session.observers import RenderObserver
-from .progress_bar import PartBar, ProgressBar
+from ..session.checkpoints.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
+from ..session.render.observers import RenderObserver
 from .recorder import RenderRecorder, RenderRequest
+from .terminal.progress_bar import PartBar, ProgressBar
 
 if TYPE_CHECKING:
-    from ..session.renderer import Frame, Progress, RenderResult
+    from ..session.render.renderer import Frame, Progress, RenderResult
 
 _UNFIT_FOR_FILES = re.compile(r"[^\w-]+")
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from ..pictures import Placement, refuse_spoiled, standard_view, write_exr
 from ..scene import RenderSettings, Scene
-from ..scene.quantities import clock_text, count_text, noise_text
-from ..session.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
-from ..session.observers import RenderObserver
+from ..scene.common.quantities import clock_text, count_text, noise_text
+from ..session.checkpoints.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
+from ..session.render.observers import RenderObserver
 from .picture_files import write_png
-from .progress_bar import PartBar, ProgressBar
+from .terminal.progress_bar import PartBar, ProgressBar
 
 if TYPE_CHECKING:
-    from ..session.renderer import Frame, Progress, RenderResult
+    from ..session.render.renderer import Frame, Progress, RenderResult
 
 _NO_ITERATION_LIMIT = 1 << 30
 _LEAST_TIME_LIMIT = 1e-3

@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 from ..pictures import make_folder
 from ..scene import RenderSettings
 from ..scene.errors import SettingsError
-from ..session.checkpoint_writer import CheckpointRequest, CheckpointWriter
-from .frame_numbers import check_places
-from .interruption import Interruption
-from .options import (
+from ..session.checkpoints.checkpoint_writer import CheckpointRequest, CheckpointWriter
+from .options.frame_numbers import check_places
+from .options.options import (
     is_blend,
     outputs_of_still,
     refuse_blend_options,
@@ -24,11 +23,12 @@ from .options import (
     write_json,
 )
 from .picture_set import PictureSet, recorded_pictures
-from .progress_bar import ProgressBar
 from .recorder import RenderRecorder, RenderRequest, apply_settings
+from .terminal.interruption import Interruption
+from .terminal.progress_bar import ProgressBar
 
 if TYPE_CHECKING:
-    from .blend_file import BlendRequest
+    from .blend_files.blend_file import BlendRequest
 
 
 def render(options: argparse.Namespace, bar: ProgressBar) -> int:
@@ -37,7 +37,7 @@ def render(options: argparse.Namespace, bar: ProgressBar) -> int:
     from_blend = is_blend(options.file)
     blend_request = None
     if from_blend:
-        from . import blend_file
+        from .blend_files import blend_file
 
         data_values += values_of_frames(settings)
         blend_request = request_of(options.file, options, data_values)

@@ -10,7 +10,7 @@ from .recorder import RenderRecorder
 
 def render_saved_scene(path: Path, recorder: RenderRecorder, resolution: tuple[int, int] | None) -> None:
     """Render a .npz; the recorder writes the files. Raises RppmError."""
-    from ..session.renderer import Renderer  # late: brings OpenGL
+    from ..session.render.renderer import Renderer
 
     scene = load_scene(path)
     if resolution is not None:

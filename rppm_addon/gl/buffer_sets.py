@@ -17,10 +17,10 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar, overload
 import moderngl
 
 from ..scene.errors import DeviceError
-from .buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
-from .context import Context
-from .programs import Bindable, ProgramLibrary
-from .records import Record, stride
+from .buffers.buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
+from .buffers.records import Record, stride
+from .context.context import Context
+from .programs.programs import Bindable, ProgramLibrary
 
 Count = Callable[[Any], int]
 """Items by the sizes that a set was made for."""

@@ -3,13 +3,13 @@
 
 from collections.abc import Iterator
 
+from .camera_paths.gbuffer import jittered_view
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
+from .film.events import BandEvents
 from .learning import BandFindings, Learning
-from .stages.events import BandEvents
-from .stages.gbuffer import jittered_view
-from .stages.stage_set import StageSet
+from .stage_set import StageSet
 
 
 def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:

@@ -27,8 +27,8 @@ from .density_estimation.radii import (
 from .density_estimation.stored_photons import PhotonList
 from .device_scene.stage_context import StageContext
 from .lights.lights import Lights
+from .photons.photons import Photons
 from .pilot_view import PilotView, at_pixels
-from .stages.photons import Photons
 
 _MOST_LEAVING = 0.25
 """Fraction of gathering rays that leave the scene, below which photons may share the world's direct light. Where more

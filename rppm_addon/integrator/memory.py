@@ -9,7 +9,7 @@ from ..scene.settings import DensityEstimation, RenderSettings
 from .common.stage_sizes import StageSizes, film_pixels
 from .common.viewport_demands import with_filtered
 from .density_estimation.density_estimator import ROUTES
-from .stages.stage_set import expected_groups
+from .stage_set import expected_groups
 from .viewport.pictures import expected_bytes
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.camera import Camera
+from .camera_paths.final_gather import GATHERING_VERTEX
 from .common.band import Band
 from .common.camera_view import camera_view
 from .common.iteration import Iteration
@@ -15,8 +16,7 @@ from .common.records.rays import HIT, NO_TRIANGLE, RAY
 from .density_estimation.radii import Radii, radius_in_pixels
 from .device_scene.stage_context import StageContext
 from .lights.portals import passes_portal
-from .stages.final_gather import GATHERING_VERTEX
-from .stages.stage_set import StageSet
+from .stage_set import StageSet
 
 MOST_PIXELS = 1 << 14
 """Most pixels of the first pilot view. The percentiles of so many footprints are those of all within a percent."""

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..gl.context import Context
-from ..gl.programs import ProgramLibrary
-from ..gl.timers import StageTimers
-from ..scene.garbage import collector_paused
+from ..gl.context.context import Context
+from ..gl.context.timers import StageTimers
+from ..gl.programs.programs import ProgramLibrary
+from ..scene.common.garbage import collector_paused
 from ..scene.scene import Scene
 from ..scene.settings import DensityEstimation, FirstPhotonHits
 from .acceleration.acceleration_structure import AccelerationStructure
@@ -21,11 +21,11 @@ from .common.viewport_demands import NO_DEMANDS, ViewportDemands
 from .deep_cubemap.deep_cubemap import DeepCubemap
 from .deep_cubemap.inspection import inspect_deep_cubemap
 from .device_scene.device_scene import DeviceScene
+from .film.film import Film
 from .learning import Learning, may_share_world_light
 from .memory import Memory, compute_memory
 from .pilot_view import view_pilot
-from .stages.film import Film
-from .stages.stage_set import StageSet
+from .stage_set import StageSet
 from .state import RenderState, read_state, restore_state
 
 

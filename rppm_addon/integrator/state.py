@@ -10,7 +10,7 @@ from .common.iteration import LEARNING_ITERATIONS
 from .common.photon_counts import NoiseVariances, PhotonCounts
 from .learning import Learning
 from .lights.lights import Lights
-from .stages.stage_set import StageSet
+from .stage_set import StageSet
 
 
 @dataclass

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..gl.constants import Constants
+from ..gl.buffers.constants import Constants
 
 SIZE = 16
 WHITE_SIZE = 32

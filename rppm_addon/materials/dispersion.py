@@ -11,11 +11,11 @@ n = n_d + (n_d - 1) / V_d shift, where the shift is that of the wavelength alone
 
 import numpy as np
 
-from ..gl.constants import Constants
+from ..gl.buffers.constants import Constants
 from ..scene.node_graphs import NodeGraph
 from . import albedo_tables
 from .colorimetry import XYZ_TO_REC709
-from .emitted import reachable
+from .traits.emitted import reachable
 
 LINE_F, LINE_D, LINE_C = 486.13e-9, 587.56e-9, 656.27e-9
 """Meters: Fraunhofer's lines by which glasses are told apart."""

@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, StorageBuffer
-from ..gl.constants import Constants
-from ..gl.context import Context
-from ..gl.programs import ProgramLibrary
-from ..gl.records import Record
+from ..gl.buffers.constants import Constants
+from ..gl.buffers.records import Record
+from ..gl.context.context import Context
+from ..gl.programs.programs import ProgramLibrary
 from ..scene.scene import Scene
 
 Record(

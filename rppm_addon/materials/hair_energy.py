@@ -9,7 +9,7 @@ on.
 
 import numpy as np
 
-from ..gl.constants import Constants
+from ..gl.buffers.constants import Constants
 from .albedo_tables import SIZE
 
 ROUGHNESS_DEGREE, COSINE_DEGREE = 4, 5

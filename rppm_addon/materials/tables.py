@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, Part
-from ..gl.buffers import GrowingBuffer
-from ..gl.context import Context
-from ..gl.programs import ProgramLibrary
-from ..gl.sources import CompileError
+from ..gl.buffers.buffers import GrowingBuffer
+from ..gl.context.context import Context
+from ..gl.programs.programs import ProgramLibrary
+from ..gl.programs.sources import CompileError
 from ..scene.images import Image
 from ..scene.materials import Material
 from ..scene.node_graphs import NodeGraph
 from ..scene.passes import RenderPass, aov_passes
 from ..scene.scene import Scene
-from ..scene.sharing import same_members
+from ..scene.storage.sharing import same_members
 from . import albedo_tables, dispersion
-from .compiler import (
+from .compiler.compiler import (
     NEUTRAL_TEXT,
     CompiledGraph,
     GraphError,
@@ -27,12 +27,12 @@ from .compiler import (
     compile_displacement,
     compile_graph,
 )
-from .emitted import Emits, emits
 from .evaluation import GraphEvaluator, LightSurface
-from .interiors import Interior
 from .records import IMAGE_ENTRY, MATERIAL, MOST_MEDIA, TexelFormat
-from .transparency import passes_shadow_rays
-from .view_dependence import depends_on_view
+from .traits.emitted import Emits, emits
+from .traits.interiors import Interior
+from .traits.transparency import passes_shadow_rays
+from .traits.view_dependence import depends_on_view
 
 
 def default_material() -> Material:

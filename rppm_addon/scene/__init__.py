@@ -20,7 +20,7 @@ from .settings import (
     PixelFilter,
     RenderSettings,
 )
-from .storage import load_scene, save_scene
+from .storage.storage import load_scene, save_scene
 
 __all__ = [
     "ALL_SETS",

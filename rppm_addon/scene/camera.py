@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .declared import declared
+from .common.declared import declared
 
 SHEARED = 1e-4
 """Cosine between axes from which on pictures show that they are not at right angles: .1 pixels of a thousand."""

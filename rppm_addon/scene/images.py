@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .declared import declared
+from .common.declared import declared
 
 
 @dataclass

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, field
 
-from .declared import declared
+from .common.declared import declared
 
 LIGHT_SETS = 64
 """Sets of objects that lights tell apart, at most; objects that nobody names are in set 0."""

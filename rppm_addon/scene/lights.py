@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .declared import declared
+from .common.declared import declared
 from .light_linking import LightLinking
 from .meshes import RayVisibility
 from .node_graphs import NodeGraph

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, field
 
-from .declared import declared
+from .common.declared import declared
 from .node_graphs import NodeGraph
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .declared import declared
+from .common.declared import declared
 from .light_linking import LightLinking
 
 SMOOTH_NORMALS = ".smooth_normals"
@@ -50,7 +50,7 @@ class MeshShape(enum.Enum):
     SURFACE = "surface"
     """Themselves."""
     STRANDS = "strands"
-    """Round strands: tubes (blender/export/strands/tubes.py)."""
+    """Round strands: tubes (blender/export/geometry/strands/tubes.py)."""
     POINTS = "points"
     """Spheres."""
 

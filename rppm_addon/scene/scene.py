@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .camera import Camera
-from .declared import declared
+from .common.declared import declared
 from .images import Image
 from .lights import Light, World
 from .materials import Material

@@ -149,7 +149,7 @@ class RenderSettings:
         soft_minimum=0.001,
         precision=4,
     )
-    """Noise of the noisiest block at which the render stops (integrator/stages/noise_estimate.py)."""
+    """Noise of the noisiest block at which the render stops (integrator/film/noise_estimate.py)."""
     adaptive_min_samples: int = setting(
         0,
         "Min Samples",

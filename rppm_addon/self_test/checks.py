@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ..gl.context import Context
-from ..gl.programs import ProgramLibrary
+from ..gl.context.context import Context
+from ..gl.programs.programs import ProgramLibrary
 from ..integrator.bvh.bvh import Bvh
 from ..scene.meshes import Mesh
 from ..scene.scene import Scene
 from ..scene.settings import DirectLight
-from ..session.renderer import Renderer
-from ..session.results import RenderResult
+from ..session.render.renderer import Renderer
+from ..session.render.results import RenderResult
 from .meshes import box_sides, placed, sphere
 from .ray_queries import TracedTriangles, ray_records
 from .scenes import furnace, glass_in_white, room

@@ -6,9 +6,9 @@ from collections.abc import Callable
 import moderngl
 import numpy as np
 
-from ..gl.context import Context
-from ..gl.programs import ProgramLibrary
-from ..gl.records import Record
+from ..gl.buffers.records import Record
+from ..gl.context.context import Context
+from ..gl.programs.programs import ProgramLibrary
 from ..integrator.acceleration.acceleration_structure import AccelerationStructure
 from ..integrator.common.active_paths import ActivePaths
 from ..integrator.common.records.rays import HIT, NO_TRIANGLE, RAY

@@ -16,12 +16,12 @@ from pathlib import Path
 
 from ..denoising.denoiser import Denoiser
 from ..denoising.places import library_places
-from ..gl.context import DeviceInformation, device_information
+from ..gl.context.context import DeviceInformation, device_information
 from ..processors import usable_cores
+from ..scene.common.quantities import count_text
+from ..scene.common.whole_files import renamed_when_whole
 from ..scene.errors import DenoiserError, RppmError
-from ..scene.quantities import count_text
-from ..scene.whole_files import renamed_when_whole
-from ..session.renderer import Renderer
+from ..session.render.renderer import Renderer
 from .checks import Finding, Speed, energy, exact_rays, picture, speed
 from .published import PUBLISHED, SPEED_SCENE
 

@@ -13,7 +13,7 @@
 readonly buffer PhotonOrigins;
 
 // An importon, by its number: its members are read where they are asked for, since processors have no registers for
-// all of them. Where reading them each time costs more (gl/texel_buffers.py), a copy.
+// all of them. Where reading them each time costs more (gl/buffers/texel_buffers.py), a copy.
 #ifdef READS_TEXELS
 #define IMPORTON Importon importon
 #define ITS importon

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entries of cells, for rays; see rppm_addon/gl/texel_buffers.py.
+// The entries of cells, for rays; see rppm_addon/gl/buffers/texel_buffers.py.
 #include "deep_cubemap/entries.glsl"
 
 #ifdef TEXEL_BUFFERS

@@ -24,7 +24,7 @@
 #define CUBEMAP_CELLS_ACCESS restrict readonly
 #endif
 
-// By index; see rppm_addon/gl/texel_buffers.py.
+// By index; see rppm_addon/gl/buffers/texel_buffers.py.
 #ifdef TEXEL_BUFFERS
 layout(rgba32ui) restrict readonly uniform uimageBuffer CubemapCells;
 CubemapCell cubemap_cell(uint index) {

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of the light arrives at the catchers that a pixel shows: what is lit as X, of what there is of them as Y
-// (session/frame_passes.py divides one by the other).
+// (session/render/frame_passes.py divides one by the other).
 
 layout(local_size_x = 64) in;
 

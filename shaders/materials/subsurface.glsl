@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subsurface scattering. Before the nodes of a material that has it (rppm_addon/materials/subsurface.py).
+// Subsurface scattering. Before the nodes of a material that has it (rppm_addon/materials/traits/subsurface.py).
 
 #include "materials/builder.glsl"
 #include "common/bsdf/subsurface.glsl"

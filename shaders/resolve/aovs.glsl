@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What materials with AOV Output nodes write them to; the materials' own text includes it (materials/compiler.py).
+// What materials with AOV Output nodes write them to; the text of the materials includes it.
 
 #define MATERIAL_AOVS
 // Of each path of a band the channels of all AOVs.

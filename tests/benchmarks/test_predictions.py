@@ -7,9 +7,9 @@ import pytest
 from benchmarks.predictions.counting import Site, counted
 from benchmarks.predictions.model import Demand, Gpu, Line, demands
 from benchmarks.predictions.recorder import Asked, Recorder
-from rppm_addon.gl import sources
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs import sources
+from rppm_addon.gl.programs.programs import ProgramLibrary
 
 SHADER = """#version 430 core
 layout(local_size_x = 64) in;

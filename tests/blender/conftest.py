@@ -44,7 +44,7 @@ def lit(scene):
 
 @pytest.fixture(scope="module")
 def renderer():
-    from rppm_addon.session.renderer import Renderer
+    from rppm_addon.session.render.renderer import Renderer
 
     with Renderer() as renderer:
         yield renderer

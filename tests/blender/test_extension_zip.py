@@ -22,7 +22,7 @@ from support import extension_zip
 
 ROOT = Path(__file__).resolve().parents[2]
 MANIFEST = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
-OF_OTHER_PROCESSES = ("rppm_addon/session/process/bootstrap.py", "rppm_addon/self_test/run.py")
+OF_OTHER_PROCESSES = ("rppm_addon/session/worker/bootstrap.py", "rppm_addon/self_test/run.py")
 RUNTIME = {"bpy", "gpu", "mathutils", "moderngl", "numpy", "OpenEXR"}
 """Modules that the extension may import beside Python's own library."""
 BLENDERS = {"bl_operators", "bl_ui", "bpy_extras", "gpu_extras"}

@@ -15,7 +15,7 @@ from support.render_states import assert_same_state
 from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene import Instance, save_scene
-from rppm_addon.session.checkpoint_file import read_checkpoint, read_summary
+from rppm_addon.session.checkpoints.checkpoint_file import read_checkpoint, read_summary
 
 from .conftest import rppm_here, start_rppm
 

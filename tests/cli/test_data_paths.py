@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from rppm_addon.commands.data_paths import set_data_path, split_assignment
+from rppm_addon.commands.blend_files.data_paths import set_data_path, split_assignment
 from rppm_addon.scene.errors import SettingsError
 
 bpy = pytest.importorskip("bpy", reason="the bpy module is not installed")

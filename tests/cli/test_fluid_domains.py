@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("bpy", reason="needs the bpy wheel")
 
-from rppm_addon.commands import fluid_domains  # noqa: E402
+from rppm_addon.commands.blend_files import fluid_domains  # noqa: E402
 from rppm_addon.pictures import read_exr  # noqa: E402
 
 WRITE = """

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rppm_addon.commands.frame_numbers import frame_numbers, path_of_frame
+from rppm_addon.commands.options.frame_numbers import frame_numbers, path_of_frame
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene.errors import SettingsError
 

@@ -13,9 +13,9 @@ from support.floor import floor_scene
 
 from rppm_addon.cli import main
 from rppm_addon.commands.picture_files import is_whole
-from rppm_addon.commands.terminal import LineFormatter
-from rppm_addon.gl.binary_cache import cache_folder
-from rppm_addon.gl.context import Context
+from rppm_addon.commands.terminal.texts import LineFormatter
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.binary_cache import cache_folder
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import save_scene
 

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from rppm_addon.gl.context import device_information
+from rppm_addon.gl.context.context import device_information
 
 from .conftest import rppm_here
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from rppm_addon.commands.options import refuse_blend_options
+from rppm_addon.commands.options.options import refuse_blend_options
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene.errors import SettingsError
 

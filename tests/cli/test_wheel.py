@@ -69,7 +69,7 @@ def test_an_installed_rppm_renders(wheel, tmp_path, saved_scene):
         assert done.returncode == 0, done.stderr
         return done.stdout
 
-    folder = run(sys.executable, "-c", "from rppm_addon.gl.sources import SHADER_FOLDER; print(SHADER_FOLDER)")
+    folder = run(sys.executable, "-c", "from rppm_addon.gl.programs.sources import SHADER_FOLDER; print(SHADER_FOLDER)")
     assert Path(folder.strip()) == target / "rppm_addon" / "shaders"
     assert "OpenGL" in run(target / "bin" / "rppm", "info")
     run(target / "bin" / "rppm", "render", saved_scene, "-o", tmp_path / "floor.exr", "--set", "rppm.samples=1")

@@ -14,7 +14,7 @@ import pytest
 
 from rppm_addon.commands.picture_files import is_whole
 from rppm_addon.pictures import read_exr
-from rppm_addon.session.checkpoint_file import read_summary
+from rppm_addon.session.checkpoints.checkpoint_file import read_summary
 
 from .conftest import ROOT, dask, renders_below, rppm_here, start_rppm, wait_for, workers_of
 

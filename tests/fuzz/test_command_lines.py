@@ -10,8 +10,8 @@ from hypothesis import given
 from fuzz.counting import COUNTS, fuzzed, may_refuse
 from fuzz.values import NUMBERS, TEXTS, VALUES
 from rppm_addon.cli import main
-from rppm_addon.commands.arguments import parser
-from rppm_addon.commands.options import split_values
+from rppm_addon.commands.options.arguments import parser
+from rppm_addon.commands.options.options import split_values
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.errors import SettingsError
 from rppm_addon.scene.setting_info import settings_of

@@ -18,8 +18,8 @@ from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import NUMBERS, changed_documents, damaged_bytes
 from rppm_addon.scene import load_scene, save_scene
 from rppm_addon.scene.errors import CheckpointError, SceneError
-from rppm_addon.session import checkpoint_file
-from rppm_addon.session.checkpoint_file import read_checkpoint
+from rppm_addon.session.checkpoints import checkpoint_file
+from rppm_addon.session.checkpoints.checkpoint_file import read_checkpoint
 
 DTYPES = ("<f4", "<f8", "<i4", "<i8", "|u1", "<u2", "|b1", "<f2")
 

@@ -16,9 +16,10 @@ from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import INTEGERS, NUMBERS, TEXTS, VALUES, as_json, changed_documents, damaged_bytes
 from rppm_addon.commands.farm.tasks import Task
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.session.process.arrays import pack, unpack
-from rppm_addon.session.process.frames import FrameReader, FrameWriter
-from rppm_addon.session.process.protocol import (
+from rppm_addon.session.render.results import Progress, RenderStatistics
+from rppm_addon.session.transport.arrays import pack, unpack
+from rppm_addon.session.transport.frames import FrameReader, FrameWriter
+from rppm_addon.session.transport.protocol import (
     FROM_CHILD,
     TO_CHILD,
     ProtocolError,
@@ -26,9 +27,8 @@ from rppm_addon.session.process.protocol import (
     frame_message,
     read_message,
 )
-from rppm_addon.session.process.received import received
-from rppm_addon.session.process.sessions import SessionStatus
-from rppm_addon.session.results import Progress, RenderStatistics
+from rppm_addon.session.transport.received import received
+from rppm_addon.session.transport.sessions import SessionStatus
 
 _ARRAYS = [np.arange(12, dtype=np.float32).reshape(3, 4), np.zeros(3, np.uint8), np.zeros((0, 3))]
 _PACKED, _ = pack(_ARRAYS)

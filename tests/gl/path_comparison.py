@@ -10,8 +10,8 @@ import pytest
 from parity.comparison import write_pair
 from path_classes import Case, traced_only
 
+from rppm_addon.integrator.camera_paths import final_gather
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.integrator.stages import final_gather
 from rppm_addon.scene import DirectLight, Scene
 
 BLOCKS, SEEDS = 3, 12

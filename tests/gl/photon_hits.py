@@ -6,8 +6,8 @@ import numpy as np
 from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.common.records.rays import HIT
-from rppm_addon.integrator.stages.light_gbuffer import LightGBuffer
-from rppm_addon.integrator.stages.photon_emission import PhotonEmission
+from rppm_addon.integrator.photons.light_gbuffer import LightGBuffer
+from rppm_addon.integrator.photons.photon_emission import PhotonEmission
 from rppm_addon.scene import Scene
 
 

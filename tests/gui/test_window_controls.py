@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from viewport_window import arrange, show_rendered, wait_for_rest
 
-from rppm_addon.session.checkpoint_file import read_summary
+from rppm_addon.session.checkpoints.checkpoint_file import read_summary
 
 
 @pytest.mark.long

@@ -12,11 +12,11 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.common.records import closures  # noqa: F401  declares Closure
 from rppm_addon.materials import albedo_tables
-from rppm_addon.materials.node_kinds import FLOAT
+from rppm_addon.materials.nodes.node_kinds import FLOAT
 from rppm_addon.materials.nodes.shaders import KINDS
 
 from .scenes import camera, cycles_channels, light, new_scene, place, plane, unfilter

@@ -7,9 +7,9 @@ import pytest
 
 pytest.importorskip("bpy", reason="the parity tests render with Cycles in the bpy wheel")
 
-from rppm_addon.gl.context import Context  # noqa: E402
-from rppm_addon.gl.programs import ProgramLibrary  # noqa: E402
-from rppm_addon.session.renderer import Renderer  # noqa: E402
+from rppm_addon.gl.context.context import Context  # noqa: E402
+from rppm_addon.gl.programs.programs import ProgramLibrary  # noqa: E402
+from rppm_addon.session.render.renderer import Renderer  # noqa: E402
 
 from . import references  # noqa: E402
 

@@ -21,7 +21,7 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from rppm_addon.blender.export import export_scene
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 from .comparison import block_means
 from .scenes import camera, light, new_scene, place, render_cycles

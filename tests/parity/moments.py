@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from support.moving import FRAME, taken_scene
 
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 from .scenes import render_cycles
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.materials.node_kinds import FLOAT, NodeKind
+from rppm_addon.gl.programs.programs import ProgramLibrary
+from rppm_addon.materials.nodes.node_kinds import FLOAT, NodeKind
 
 from .scenes import cycles_channels, new_scene, unfilter
 

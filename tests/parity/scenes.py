@@ -20,7 +20,7 @@ from mathutils import Matrix, Vector
 
 from rppm_addon.blender.export import export_scene
 from rppm_addon.scene import Scene
-from rppm_addon.session.renderer import Renderer, RenderStatistics
+from rppm_addon.session.render.renderer import Renderer, RenderStatistics
 
 from . import references
 

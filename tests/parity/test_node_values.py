@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 
-from rppm_addon.materials.node_kinds import BOOLEAN
 from rppm_addon.materials.nodes import color, curves, math, spectrum, view
+from rppm_addon.materials.nodes.node_kinds import BOOLEAN
 
 from .value_grids import (
     CAMERA_MATRIX,

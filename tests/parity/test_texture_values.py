@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.materials.node_kinds import BOOLEAN, FLOAT
+from rppm_addon.materials.nodes.node_kinds import BOOLEAN, FLOAT
 from rppm_addon.materials.nodes.textures import KINDS
 
 from .node_values import NodeCase, cycles_values, our_name, our_values

@@ -16,12 +16,12 @@ import moderngl
 import numpy as np
 from mathutils import Euler, Matrix
 
+from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext
-from rppm_addon.blender.export.nodes.graphs import GraphExporter
-from rppm_addon.blender.export.report import Report
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.sources import expand
-from rppm_addon.materials.node_kinds import FLOAT, NodeKind
+from rppm_addon.blender.export.shading.nodes.graphs import GraphExporter
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.sources import expand
+from rppm_addon.materials.nodes.node_kinds import FLOAT, NodeKind
 from rppm_addon.scene.node_graphs import Link, ShaderNode
 
 from .scenes import cycles_channels, new_scene, unfilter

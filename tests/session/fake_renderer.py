@@ -219,12 +219,12 @@ def fills_the_log(pipes):
 
 if __name__ == "__main__":
     sys.path.insert(0, ROOT)
-    from rppm_addon.session.process.protocol import frame_message, read_message, write_message
+    from rppm_addon.session.transport.protocol import frame_message, read_message, write_message
 
     talk = Pipes()
     os.dup2(2, 1)
     if sys.argv[1] not in ("import_error", "ends_before_the_greeting", "hangs_in_the_greeting"):
-        from rppm_addon.gl.context import DeviceInformation
-        from rppm_addon.session.process.arrays import unpack
-        from rppm_addon.session.process.frames import FrameWriter
+        from rppm_addon.gl.context.context import DeviceInformation
+        from rppm_addon.session.transport.arrays import unpack
+        from rppm_addon.session.transport.frames import FrameWriter
     globals()[sys.argv[1]](talk)

@@ -11,21 +11,21 @@ from support.floor import floor_scene
 from rppm_addon.commands.merging import merge_parts
 from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.denoising.places import library_places
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene.passes import NOISY_IMAGE
 from rppm_addon.scene.settings import DenoisingInputPasses
-from rppm_addon.session.checkpoint_file import write_checkpoint
-from rppm_addon.session.checkpoint_writer import still_render
-from rppm_addon.session.continuation import Continuation
-from rppm_addon.session.process.arrays import unpack
-from rppm_addon.session.process.known_programs import KnownPrograms
-from rppm_addon.session.process.remote_rendering import RemoteRenderer
-from rppm_addon.session.process.rendering import Rendering
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.checkpoints.checkpoint_file import write_checkpoint
+from rppm_addon.session.checkpoints.checkpoint_writer import still_render
+from rppm_addon.session.checkpoints.continuation import Continuation
+from rppm_addon.session.placeholders.known_programs import KnownPrograms
+from rppm_addon.session.render.render_job import RenderJob
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.transport.arrays import unpack
+from rppm_addon.session.transport.remote_rendering import RemoteRenderer
+from rppm_addon.session.transport.sessions import SessionKind
+from rppm_addon.session.worker.rendering import Rendering
 
 PLACES = library_places()
 needs_library = pytest.mark.skipif(

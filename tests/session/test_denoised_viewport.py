@@ -12,17 +12,17 @@ from support.floor import floor_scene
 
 from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.denoising.places import library_places
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.scene.errors import DenoiserError
 from rppm_addon.scene.settings import DenoisingInputPasses
-from rppm_addon.session.process import viewport_renderer
-from rppm_addon.session.process.background_denoising import MOST_TIME, BackgroundDenoising
-from rppm_addon.session.process.client_session import ViewportSession
-from rppm_addon.session.process.known_programs import KnownPrograms
-from rppm_addon.session.process.resolution_scaler import ResolutionScaler
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.process.viewport_renderer import ViewportRenderer
+from rppm_addon.session.placeholders.known_programs import KnownPrograms
+from rppm_addon.session.placeholders.resolution_scaler import ResolutionScaler
+from rppm_addon.session.render.background_denoising import MOST_TIME, BackgroundDenoising
+from rppm_addon.session.transport.client_session import ViewportSession
+from rppm_addon.session.transport.sessions import SessionKind
+from rppm_addon.session.viewport import viewport_renderer
+from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
 
 MARK = 77.0
 
@@ -90,7 +90,7 @@ def viewport(device, denoiser, monkeypatch):
     monkeypatch.setattr(viewport_renderer, "FRAME_SECONDS", 0.0)
     monkeypatch.setattr(viewport_renderer, "MOST_PICTURE_TIME", math.inf)
     monkeypatch.setattr(ResolutionScaler, "levels", lambda *_: [1.0])
-    monkeypatch.setattr("rppm_addon.session.process.background_denoising.MOST_TIME", 1.0)
+    monkeypatch.setattr("rppm_addon.session.render.background_denoising.MOST_TIME", 1.0)
     shown = Shown()
     with device[0].moderngl:
         shown.viewing = ViewportRenderer(*device, denoiser, shown.send, AllKnown())

@@ -3,7 +3,7 @@
 
 import pytest
 
-from rppm_addon.session.process.fair_share import FairShare
+from rppm_addon.session.worker.fair_share import FairShare
 
 
 def run(share, turns, costs, weights):

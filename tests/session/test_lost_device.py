@@ -8,15 +8,15 @@ import signal
 import numpy as np
 import pytest
 
-from rppm_addon.gl.driver_errors import OUT_OF_MEMORY, DriverErrors
-from rppm_addon.gl.losses import LossWatch
+from rppm_addon.gl.context.driver_errors import OUT_OF_MEMORY, DriverErrors
+from rppm_addon.gl.context.losses import LossWatch
 from rppm_addon.scene.errors import DeviceLostError
-from rppm_addon.session import renderer as renderer_module
-from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.remote_rendering import RemoteRenderer
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.renderer import MOST_LOSSES, Renderer
+from rppm_addon.session.render import renderer as renderer_module
+from rppm_addon.session.render.render_job import RenderJob
+from rppm_addon.session.render.renderer import MOST_LOSSES, Renderer
+from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.transport.remote_rendering import RemoteRenderer
+from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, scene_of, wait_until
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene.errors import DeviceError
-from rppm_addon.session.continuation import Continuation
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.checkpoints.continuation import Continuation
+from rppm_addon.session.render.renderer import Renderer
 
 from .conftest import scene_of
 

@@ -7,16 +7,16 @@ from types import SimpleNamespace
 import pytest
 from support.floor import floor_scene
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.gl.sources import CompileError
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
+from rppm_addon.gl.programs.sources import CompileError
 from rppm_addon.integrator.common.stage_sizes import StageSizes
-from rppm_addon.integrator.stages.stage_set import StageSet
+from rppm_addon.integrator.stage_set import StageSet
 from rppm_addon.integrator.viewport.pictures import demands_of
 from rppm_addon.scene import Material, NodeGraph
-from rppm_addon.session.process.known_programs import KnownPrograms, programs_of
-from rppm_addon.session.process.preparation import Preparation
-from rppm_addon.session.process.stand_ins import StandIns
+from rppm_addon.session.placeholders.known_programs import KnownPrograms, programs_of
+from rppm_addon.session.placeholders.stand_ins import StandIns
+from rppm_addon.session.worker.preparation import Preparation
 
 
 class Collected:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rppm_addon.session.process.protocol import (
+from rppm_addon.session.transport.protocol import (
     FROM_CHILD,
     LONGEST_MESSAGE,
     TO_CHILD,
@@ -47,7 +47,7 @@ def test_malformed_text(text):
 def test_the_child_can_read_its_first_message_before_it_finds_numpy():
     code = (
         "import sys; sys.modules['numpy'] = sys.modules['moderngl'] = None; sys.path.insert(0, sys.argv[1]);"
-        "import rppm_addon.session.process.protocol"
+        "import rppm_addon.session.transport.protocol"
     )
     subprocess.run([sys.executable, "-I", "-S", "-c", code, str(ROOT)], check=True, timeout=60)
 

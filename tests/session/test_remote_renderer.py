@@ -10,11 +10,11 @@ import pytest
 from support.sent_members import watch_sent_members
 
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.remote_rendering import RemoteRenderer
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.render_job import RenderJob
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.transport.remote_rendering import RemoteRenderer
+from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, open_blocks, scene_of, wait_until
 

@@ -13,11 +13,11 @@ import pytest
 
 from rppm_addon.scene import Image
 from rppm_addon.scene.errors import RendererError
-from rppm_addon.session.process import arrays, client, remote_rendering
-from rppm_addon.session.process.client import MOST_RESTARTS, ProcessState
-from rppm_addon.session.process.protocol import ProtocolError
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.render_job import RenderJob
+from rppm_addon.session.render.render_job import RenderJob
+from rppm_addon.session.transport import arrays, client, remote_rendering
+from rppm_addon.session.transport.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.transport.protocol import ProtocolError
+from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, scene_of, wait_until
 

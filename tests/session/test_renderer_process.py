@@ -15,11 +15,11 @@ import pytest
 
 from rppm_addon.scene import Movement, Shutter
 from rppm_addon.scene.errors import RendererError, SettingsError
-from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.remote_rendering import RemoteRenderer, render
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.render_job import RenderJob
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.transport.remote_rendering import RemoteRenderer, render
+from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, is_running, scene_of, shared_files, wait_until
 
@@ -179,8 +179,8 @@ _PARENT = """
 import json, sys, time
 from pathlib import Path
 sys.path[:0] = [{root!r}, {tests!r}]
-from rppm_addon.session.process.client import RendererProcess
-from rppm_addon.session.process.sessions import SessionKind
+from rppm_addon.session.transport.client import RendererProcess
+from rppm_addon.session.transport.sessions import SessionKind
 from session.conftest import children, scene_of, wait_until
 process = RendererProcess([sys.executable, "-I"], sys.path, Path(sys.argv[1]))
 session = process.open(SessionKind.VIEWPORT)

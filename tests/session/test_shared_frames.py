@@ -7,8 +7,8 @@ import threading
 import numpy as np
 import pytest
 
-from rppm_addon.session.process.frames import SLOTS, FrameReader, FrameWriter
-from rppm_addon.session.process.protocol import ProtocolError
+from rppm_addon.session.transport.frames import SLOTS, FrameReader, FrameWriter
+from rppm_addon.session.transport.protocol import ProtocolError
 
 
 def picture(value, width=8, height=4):

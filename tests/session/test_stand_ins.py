@@ -8,13 +8,13 @@ import pytest
 from support.floor import floor_scene
 
 from rppm_addon.denoising.denoiser import Denoiser
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.scene import Material, NodeGraph
-from rppm_addon.session.process import stand_ins
-from rppm_addon.session.process.known_programs import KnownPrograms
-from rppm_addon.session.process.stand_ins import StandIns
-from rppm_addon.session.process.viewport_renderer import ViewportRenderer
+from rppm_addon.session.placeholders import stand_ins
+from rppm_addon.session.placeholders.known_programs import KnownPrograms
+from rppm_addon.session.placeholders.stand_ins import StandIns
+from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
 
 
 class Compiling:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Camera, RenderSettings, Scene
-from rppm_addon.session import renderer
-from rppm_addon.session.continuation import Continuation
-from rppm_addon.session.renderer import SlicedRender
-from rppm_addon.session.results import RenderResult, RenderStatistics
+from rppm_addon.session.checkpoints.continuation import Continuation
+from rppm_addon.session.render import renderer
+from rppm_addon.session.render.renderer import SlicedRender
+from rppm_addon.session.render.results import RenderResult, RenderStatistics
 
 STEPS = 20
 

@@ -12,10 +12,10 @@ from support.floor import floor_scene
 from support.full_scene import assert_same, full_scene
 
 from rppm_addon.scene import Image, Instance, Mesh, Particle, RayVisibility
-from rppm_addon.session.process.arrays import pack, unpack
-from rppm_addon.session.process.protocol import ProtocolError
-from rppm_addon.session.process.shared_memory import SharedBlock
-from rppm_addon.session.process.transfer import SceneReceiver, SceneSender
+from rppm_addon.session.transport.arrays import pack, unpack
+from rppm_addon.session.transport.protocol import ProtocolError
+from rppm_addon.session.transport.shared_memory import SharedBlock
+from rppm_addon.session.transport.transfer import SceneReceiver, SceneSender
 
 
 class Wire:

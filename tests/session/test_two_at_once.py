@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from rppm_addon.session.process.remote_rendering import RemoteRenderer
-from rppm_addon.session.process.sessions import SessionKind
-from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.render_job import RenderJob
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.transport.remote_rendering import RemoteRenderer
+from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, scene_of
 

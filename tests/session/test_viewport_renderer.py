@@ -9,12 +9,12 @@ import pytest
 from support.floor import floor_scene
 
 from rppm_addon.denoising.denoiser import Denoiser
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.scene import Panorama, PanoramaKind
 from rppm_addon.scene.meshes import Dicing
-from rppm_addon.session.process.known_programs import MOST_TRIANGLES, KnownPrograms
-from rppm_addon.session.process.viewport_renderer import ViewportRenderer
+from rppm_addon.session.placeholders.known_programs import MOST_TRIANGLES, KnownPrograms
+from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
 
 
 class Sent:

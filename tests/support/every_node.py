@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from rppm_addon.materials.compiler import ADD_SHADER, MIX_SHADER, compile_displacement, compile_graph
+from rppm_addon.materials.compiler.compiler import ADD_SHADER, MIX_SHADER, compile_displacement, compile_graph
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene.node_graphs import NodeGraph
 

@@ -6,8 +6,8 @@ import gc
 import os
 from pathlib import Path
 
-from rppm_addon.gl.context import Context
-from rppm_addon.session import renderer as session_renderer
+from rppm_addon.gl.context.context import Context
+from rppm_addon.session.render import renderer as session_renderer
 
 
 def resident_bytes() -> int:

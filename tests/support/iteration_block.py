@@ -3,7 +3,7 @@
 
 import moderngl
 
-from rppm_addon.gl.context import Context
+from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.device_scene.iteration_parameters import ITERATION_PARAMETERS
 from rppm_addon.scene.lights import UNLIMITED_BOUNCES
 

@@ -4,7 +4,7 @@
 import bpy
 
 from rppm_addon.scene import Scene
-from rppm_addon.session.observers import RenderObserver, observing
+from rppm_addon.session.render.observers import RenderObserver, observing
 
 FRAME = 10
 

@@ -8,7 +8,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 
 import rppm_addon
-from rppm_addon.gl.sources import SHADER_FOLDER, Source, expand
+from rppm_addon.gl.programs.sources import SHADER_FOLDER, Source, expand
 
 from .every_node import displacements, programs
 

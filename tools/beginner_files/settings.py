@@ -5,7 +5,7 @@ import functools
 
 import bpy
 
-from rppm_addon.commands.data_paths import set_data_path
+from rppm_addon.commands.blend_files.data_paths import set_data_path
 
 from .files import ball, cube, file, monkey, plain, start
 

@@ -14,8 +14,8 @@ from rppm_addon.denoising.places import library_places
 from rppm_addon.pictures import write_exr
 from rppm_addon.scene import load_scene
 from rppm_addon.scene.passes import DENOISING_ALBEDO, DENOISING_NORMAL
-from rppm_addon.session.renderer import Renderer
-from rppm_addon.session.results import Frame, Progress
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.render.results import Frame, Progress
 
 _NO_LIMIT = 1 << 30
 

@@ -19,11 +19,11 @@ import numpy as np
 
 import rppm_addon
 from rppm_addon.blender.export import SceneError
-from rppm_addon.commands.data_paths import set_data_path, split_assignment
+from rppm_addon.commands.blend_files.data_paths import set_data_path, split_assignment
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene import Scene
-from rppm_addon.session.observers import RenderObserver, observing
-from rppm_addon.session.results import Progress, RenderResult
+from rppm_addon.session.render.observers import RenderObserver, observing
+from rppm_addon.session.render.results import Progress, RenderResult
 
 from . import staging
 from .settings import Effort, equalize

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from rppm_addon.scene import Scene as SavedScene
 from rppm_addon.scene import load_scene
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 from ..description import Scene
 from ..jobs import Job, Recorder, run_adapter

@@ -6,29 +6,35 @@ from collections.abc import Callable
 import bpy
 
 from ...scene import Scene
+from ...scene.common.garbage import collector_paused
 from ...scene.errors import SceneError
-from ...scene.garbage import collector_paused
-from ...session.bake_passes import BakePass
-from .baking import BakePixels, bake_settings, camera_beside, look_at_texels, seen_from
+from ...session.render.bake_passes import BakePass
 from .camera.camera import export_camera
+from .camera.culling import Culling
 from .camera.eyes import Eye, views_of
 from .camera.view import export_view
+from .common.report import ExportStopped, Report
 from .context import ExportContext
-from .culling import Culling
-from .frames import FrameExporter
-from .layers import world_of
-from .libraries import warn_of_missing
-from .light_linking import LightLinks
-from .lights.world import export_world
-from .motion import MotionExporter, is_blurred, wants_neighbors
-from .objects.assets import export_asset_names
-from .objects.object_pass import Placed
-from .objects.objects import ObjectExporter
+from .instances.assets import export_asset_names
+from .instances.object_pass import Placed
+from .instances.objects import ObjectExporter
 from .omissions import OmissionList, objects_of
-from .report import ExportStopped, Report
-from .settings import export_cubemap_center, export_dicing_rate, export_exposure, export_settings, preview_settings
-from .stamps import export_stamps
-from .sync import ExportProgress, SceneSync
+from .shading.lights.world import export_world
+from .updates.baking import BakePixels, bake_settings, camera_beside, look_at_texels, seen_from
+from .updates.frames import FrameExporter
+from .updates.libraries import warn_of_missing
+from .updates.motion import MotionExporter, is_blurred, wants_neighbors
+from .updates.stamps import export_stamps
+from .updates.sync import ExportProgress, SceneSync
+from .view_layer.layers import world_of
+from .view_layer.light_linking import LightLinks
+from .view_layer.settings import (
+    export_cubemap_center,
+    export_dicing_rate,
+    export_exposure,
+    export_settings,
+    preview_settings,
+)
 
 __all__ = [
     "BakePixels",

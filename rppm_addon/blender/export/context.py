@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from .culling import Culling
-from .curve_settings import CurveSettings, curve_settings
+from .camera.culling import Culling
+from .common.report import Report
+from .geometry.strands.curve_settings import CurveSettings, curve_settings
 from .images.images import ImageTable
 from .images.texture_limit import texture_limit
-from .layers import LayerMasks, world_of
-from .light_linking import LightLinks
-from .report import Report
+from .view_layer.layers import LayerMasks, world_of
+from .view_layer.light_linking import LightLinks
 
 
 @dataclass

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Features that a file may use and no picture of RPPM shows, so that no export leaves them out in silence.
 
-Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (objects/object_pass.py).
+Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (instances/object_pass.py).
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import bpy
 
-from .meshes.dicing import adaptive_modifier
-from .passes import passes_of_cycles_only
-from .report import Report, listed
-from .slices import Slices
+from .common.report import Report, listed
+from .common.slices import Slices
+from .geometry.meshes.dicing import adaptive_modifier
+from .view_layer.passes import passes_of_cycles_only
 
 _AT_ONCE = 32
 """Objects between which nobody looks at the clock."""

@@ -3,25 +3,18 @@
 
 import bpy
 
-from . import (
+from . import borrowed, data, shading, switches, view_layer, viewport_header, viewport_shading, warnings
+from .render_tab import (
     baking,
-    borrowed,
     curves,
     cycles_settings,
-    data,
     lights,
     motion,
     performance,
     presets,
     render,
     sampling,
-    shading,
     simplify,
-    switches,
-    view_layer,
-    viewport_header,
-    viewport_shading,
-    warnings,
 )
 
 CLASSES = (

@@ -5,7 +5,7 @@ import bpy
 from bl_ui import properties_view_layer
 
 from ...scene.passes import PASSES, Accumulation
-from ..export.passes import switch_of
+from ..export.view_layer.passes import switch_of
 from .base import RppmPanel
 
 

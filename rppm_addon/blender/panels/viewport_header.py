@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..renderer_process import failure
+from ..render_client.renderer_process import failure
 from ..reports import reports_of
 from .base import ENGINE, restart_button
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..renderer_process import failure
+from ..render_client.renderer_process import failure
 from ..reports import RenderReport, reports_of
 from ..subjects import Subject, SubjectKind, subjects
 from .base import ENGINE, RppmPanel, letters_across, paragraph, restart_button

@@ -7,12 +7,12 @@ import sys
 from ...pictures import make_folder
 from ...scene import RenderSettings
 from ...scene.errors import SettingsError
-from ..frame_numbers import check_places
-from ..interruption import Interruption
-from ..options import is_blend, outputs_of_still, refuse_blend_options, values_and_limits, values_of_frames
-from ..progress_bar import ProgressBar
+from ..options.frame_numbers import check_places
+from ..options.options import is_blend, outputs_of_still, refuse_blend_options, values_and_limits, values_of_frames
+from ..options.setting_options import given_settings
 from ..recorder import apply_settings
-from ..setting_options import given_settings
+from ..terminal.interruption import Interruption
+from ..terminal.progress_bar import ProgressBar
 
 
 def farm(options: argparse.Namespace, bar: ProgressBar) -> int:

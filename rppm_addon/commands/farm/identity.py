@@ -7,7 +7,7 @@ from pathlib import Path
 
 import rppm_addon
 
-from ...gl.sources import SHADER_FOLDER
+from ...gl.programs.sources import SHADER_FOLDER
 
 _SUFFIXES = (".py", ".npz", ".glsl", ".comp", ".vert", ".frag", ".geom")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...scene.errors import SceneError
-from ..progress_bar import ProgressBar
+from ..terminal.progress_bar import ProgressBar
 from .cluster import Cluster, local_cluster, remote_cluster
 from .dispatch import Dispatcher
 from .identity import identity

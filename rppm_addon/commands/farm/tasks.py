@@ -10,9 +10,9 @@ from itertools import pairwise
 from pathlib import Path
 
 from ...scene.errors import SceneError, SettingsError
-from ...scene.validation import check_record
-from ..arguments import parser
-from ..frame_numbers import path_of_frame
+from ...scene.storage.validation import check_record
+from ..options.arguments import parser
+from ..options.frame_numbers import path_of_frame
 from ..picture_files import is_whole
 
 PART = "samples_"

@@ -5,7 +5,7 @@ import sys
 import threading
 import time
 
-from ..progress_bar import ProgressBar
+from ..terminal.progress_bar import ProgressBar
 from .tasks import Task
 from .worker import Outcome
 

@@ -7,7 +7,7 @@ import signal
 import threading
 import time
 
-from ..interruption import INTERRUPTED
+from ..terminal.interruption import INTERRUPTED
 
 STANDARD_INPUT = 0
 """Its number for the system, whatever sys.stdin is."""

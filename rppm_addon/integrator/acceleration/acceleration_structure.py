@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 import moderngl
 
 from ...gl.buffer_sets import BufferSet
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
 from ..common.records.triangles import TRIANGLE_VERTICES  # noqa: F401  likewise

@@ -11,8 +11,8 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
-from ...gl.constants import Constants
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.storage_blocks import StorageBlock
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
 from ..common.require import require
 from .clustering import MOST_DEPTH, NODE, build_nodes

@@ -12,7 +12,7 @@ import functools
 
 import numpy as np
 
-from ...gl.records import Record
+from ...gl.buffers.records import Record
 from ...processors import usable_cores
 
 NODE = Record("BvhNode", low0="vec3", child0="uint", high0="vec3", low1="vec3", child1="uint", high1="vec3")

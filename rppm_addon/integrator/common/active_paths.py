@@ -7,11 +7,11 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Count, Declared
-from ...gl.buffers import SMALLEST, GrowingBuffer, refuse_large_block
-from ...gl.context import Context
-from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram, ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.buffers import SMALLEST, GrowingBuffer, refuse_large_block
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram, ProgramLibrary
 
 ACTIVE_PATHS_HEADER = Record(
     "ActivePathsHeader",

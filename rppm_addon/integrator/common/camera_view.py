@@ -5,9 +5,9 @@ import math
 
 import numpy as np
 
-from ...gl.constants import Constants
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
 from ...scene.camera import Camera, Panorama, PanoramaKind
 from ...scene.errors import SceneError
 from .band import MOST_RASTER_PIXELS

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from ...gl.buffer_sets import BufferList, Declared, StorageBuffer
-from ...gl.buffers import GrowingBuffer, refuse_large_block
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record, stride
+from ...gl.buffers.buffers import GrowingBuffer, refuse_large_block
+from ...gl.buffers.records import Record, stride
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from .band import Band
 from .stage_sizes import StageSizes, band_pixels
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...scene.declared import declared
+from ...scene.common.declared import declared
 from .iteration import LEARNING_ITERATIONS
 
 _CAMERA_VERTEX, _SHADOW_RAY, _PHOTON_PAIR = 1.0, 0.5, 0.1
@@ -29,7 +29,7 @@ _AROUND, _LEFT_OUT = 2, 0.001
 EVENNESS = 2.25
 """Factor by which the variance of the mean of many iterations is lower than if they were independent, as their sample
 points are even: along edges the mean of 64 has 1.5 times less error than two halves of them tell
-(stages/noise_estimate.py). Photons have no such gain, as the guide sends them elsewhere and radii shrink."""
+(film/noise_estimate.py). Photons have no such gain, as the guide sends them elsewhere and radii shrink."""
 _NO_NOISE = 1e-9
 """Relative variance that counts as none."""
 _SETTLED = LEARNING_ITERATIONS.bit_length()

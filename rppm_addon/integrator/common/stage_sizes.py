@@ -3,9 +3,9 @@
 
 from dataclasses import dataclass
 
-from ...materials.ashikhmin_shirley import has_ashikhmin
-from ...materials.hair import has_hair
-from ...materials.subsurface import has_subsurface
+from ...materials.traits.ashikhmin_shirley import has_ashikhmin
+from ...materials.traits.hair import has_hair
+from ...materials.traits.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits

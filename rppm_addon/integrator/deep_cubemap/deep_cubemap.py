@@ -29,12 +29,12 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import TEXEL_SIZE, Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
-from ...gl.texel_sources import DEFINE as TEXEL_BUFFERS
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import TEXEL_SIZE, Context
+from ...gl.programs.programs import ProgramLibrary
+from ...gl.programs.texel_sources import DEFINE as TEXEL_BUFFERS
 from ...scene.errors import DeviceError, DeviceLostError
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
 from ..common.require import require

@@ -3,9 +3,9 @@
 
 import numpy as np
 
-from ...gl.buffers import GrowingBuffer
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.buffers.buffers import GrowingBuffer
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.camera import Camera
 from ..common.band import bands_of
 from ..common.camera_view import CAMERA_VIEW, camera_view

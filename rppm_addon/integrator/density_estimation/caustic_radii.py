@@ -11,11 +11,11 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
-from ...gl.timers import StageTimers
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.context.timers import StageTimers
+from ...gl.programs.programs import Bindable, ProgramLibrary
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.stage import Stage

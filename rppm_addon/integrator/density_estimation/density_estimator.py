@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from weakref import WeakKeyDictionary
 
 from ...gl.buffer_sets import Part
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.timers import StageTimers
+from ...gl.context.context import Context
+from ...gl.context.timers import StageTimers
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DensityEstimation, RenderSettings
 from ..common.iteration import Iteration
 from ..common.require import require

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import SplatTargets, StoredPhotons

@@ -11,10 +11,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ..common.stage_sizes import StageSizes, band_pixels
 
 SUM_PARAMETERS = {

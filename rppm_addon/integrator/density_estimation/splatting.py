@@ -7,11 +7,11 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
-from ...gl.records import Record, stride
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record, stride
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import Bindable, DrawProgram, ProgramLibrary
 from ..common.band import MOST_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums

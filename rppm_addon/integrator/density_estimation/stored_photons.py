@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ...gl.bindings import ITERATION
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
-from ...gl.records import Record
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.bindings import ITERATION
+from ...gl.programs.programs import Bindable, ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii

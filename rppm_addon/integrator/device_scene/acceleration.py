@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure as Kind

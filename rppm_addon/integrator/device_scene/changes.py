@@ -9,7 +9,7 @@ import numpy as np
 
 from ...scene.node_graphs import Link, NodeGraph
 from ...scene.scene import Scene
-from ...scene.sharing import LISTS, same_members
+from ...scene.storage.sharing import LISTS, same_members
 
 _CAMERA_OUTPUTS = {("tex_coord", "camera"), ("tex_coord", "window")}
 

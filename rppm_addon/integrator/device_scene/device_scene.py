@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...gl.bindings import ITERATION
-from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
-from ...gl.timers import StageTimers
+from ...gl.context.context import Context
+from ...gl.context.timers import StageTimers
+from ...gl.programs.bindings import ITERATION
+from ...gl.programs.programs import Bindable, ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh
 from ...scene.moving_scene import MovingScene

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 import moderngl
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.scene import Scene
 from ...scene.settings import DirectLight
 from ..common.iteration import Iteration

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
-from ...materials.emitted import Emits, asks_for_path
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
+from ...materials.traits.emitted import Emits, asks_for_path
 from ...scene.errors import DeviceError
 from ...scene.meshes import Instance, MeshShape, RayVisibility
 from ...scene.scene import Scene

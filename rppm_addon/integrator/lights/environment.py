@@ -5,11 +5,11 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.textures import TextureKind
-from ...materials.emitted import Emits, asks_for_path, emits
+from ...gl.buffers.textures import TextureKind
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
+from ...materials.traits.emitted import Emits, asks_for_path, emits
 from ...scene.images import Image
 from ...scene.lights import World
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode

@@ -12,11 +12,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import Bindable, ProgramLibrary
 from .light_records import LightShape
 
 StorageBlock("PhotonCells", "uint photon_cells[];")

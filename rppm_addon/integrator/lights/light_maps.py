@@ -9,12 +9,12 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.textures import TextureKind
-from ...materials.emitted import LightVariation, light_variation
+from ...gl.buffers.textures import TextureKind
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...materials.evaluation import LightSurface, LightSurfaceKind, MapShape
 from ...materials.tables import MaterialTables
+from ...materials.traits.emitted import LightVariation, light_variation
 from ...scene.images import Image
 from ...scene.lights import Light, LightKind
 from ..common.require import require

@@ -3,9 +3,9 @@
 
 import enum
 
-from ...gl.constants import Constants
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
 
 NO_LIGHT_GROUP = 0xFFFFFFFF
 """In place of the number of a light group."""

@@ -12,8 +12,8 @@ import math
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from .light_records import LIGHT_NODE, LightShape
 
 _MORTON_BITS = 10

@@ -9,8 +9,8 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.context.context import Context
+from ...gl.programs.programs import Bindable, ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES

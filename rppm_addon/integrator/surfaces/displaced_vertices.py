@@ -6,10 +6,10 @@ import dataclasses
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import ComputeProgram, ProgramLibrary
-from ...gl.records import Record
-from ...gl.sources import CompileError
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs.sources import CompileError
 from ...materials.tables import MaterialTables, first_line
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
 from ...scene.scene import Scene

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.meshes import UNDISPLACED, AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.motion import Deformation, Shutter
 from ...scene.scene import Scene
-from ...scene.sharing import same_bits
+from ...scene.storage.sharing import same_bits
 from .dicing import MOST_TRIANGLES, DicedMesh, parts_of_edges, rounded_parts
 from .displaced_normals import displaced_normals
 from .displaced_vertices import DisplacedVertices

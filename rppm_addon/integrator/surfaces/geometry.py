@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers import GrowingBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
+from ...gl.buffers.buffers import GrowingBuffer
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility

@@ -13,12 +13,12 @@ from collections.abc import Mapping
 import moderngl
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
-from ...materials.compiler import MOST_NODE_RAYS, NodeRayCounts
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import Bindable, ComputeProgram, ProgramLibrary
+from ...materials.compiler.compiler import MOST_NODE_RAYS, NodeRayCounts
 from ..acceleration.acceleration_structure import AccelerationStructure
 
 Record(

@@ -8,13 +8,13 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
-from ...gl.records import Record
-from ...gl.sources import CompileError
-from ...gl.storage_blocks import StorageBlock
-from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import Bindable, ComputeProgram, ProgramLibrary
+from ...gl.programs.sources import CompileError
+from ...materials.compiler.compiler import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.scene import Scene
 from ..acceleration.acceleration_structure import AccelerationStructure

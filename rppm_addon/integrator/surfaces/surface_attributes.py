@@ -6,15 +6,15 @@ import operator
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.constants import Constants
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
-from ...scene.sharing import same_members
+from ...scene.storage.sharing import same_members
 from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry, affine_inverses
 

@@ -10,15 +10,15 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record, stride
-from ...gl.storage_blocks import StorageBlock
+from ...gl.buffers.records import Record, stride
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.passes import FILM_PASSES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes, film_pixels
 from ..common.viewport_demands import FILTERED_PASSES
-from ..stages.film import Film
+from ..film.film import Film
 
 Record(
     "NoiseFilterParameters",

@@ -8,20 +8,20 @@ from dataclasses import replace
 import numpy as np
 
 from ...gl.buffer_sets import sum_by_name
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import stride
-from ...materials.ashikhmin_shirley import has_ashikhmin
-from ...materials.hair import has_hair
-from ...materials.node_rays import casts_rays, traces_rays
-from ...materials.subsurface import has_subsurface
+from ...gl.buffers.records import stride
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...materials.traits.ashikhmin_shirley import has_ashikhmin
+from ...materials.traits.hair import has_hair
+from ...materials.traits.node_rays import casts_rays, traces_rays
+from ...materials.traits.subsurface import has_subsurface
 from ...scene.materials import Material
 from ...scene.scene import Scene
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
 from ..common.viewport_demands import ViewportDemands
-from ..first_look import FirstLook
-from ..stages.film import Film, exposed
+from ..film.film import Film, exposed
+from .first_look import FirstLook
 from .noise_filter import NoiseFilter, strength
 from .reprojection import HISTORY_ENDS, MOST_HISTORY, NewPicture, Reprojection, SeenPicture, can_move
 

@@ -12,14 +12,14 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer, sum_by_name
-from ...gl.context import Context
-from ...gl.programs import ProgramLibrary
-from ...gl.records import Record
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.scene import Scene
-from ...scene.sharing import same_members
+from ...scene.storage.sharing import same_members
 from ..common.camera_view import CAMERA_VIEW, camera_view, is_rasterized
 from ..common.stage_sizes import StageSizes, film_pixels
-from ..first_look import FirstLook
+from .first_look import FirstLook
 
 Record(
     "ReprojectionParameters",

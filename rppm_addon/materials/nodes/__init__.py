@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Kinds of nodes by name; a module a family."""
 
-from ..node_kinds import NodeKind
 from . import color, curves, geometry, hair, images, math, shaders, spectrum, stand_in, textures, view
+from .node_kinds import NodeKind
 
 KINDS: dict[str, NodeKind] = {}
 for _family in (color, curves, geometry, hair, images, math, shaders, spectrum, stand_in, textures, view):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colors: mixed, adjusted, taken apart and put together."""
 
-from ...gl.constants import Constants
-from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 BLEND_TYPES = (
     "MIX", "DARKEN", "MULTIPLY", "BURN", "LIGHTEN", "SCREEN", "DODGE", "ADD", "OVERLAY", "SOFT_LIGHT", "LINEAR_LIGHT",

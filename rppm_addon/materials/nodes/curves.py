@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Color ramps and curves. Their tables are made by rppm_addon/blender/export/nodes/tables.py."""
+"""Color ramps and curves. Their tables are made by rppm_addon/blender/export/shading/nodes/tables.py."""
 
-from ...gl.constants import Constants
-from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 TABLE = ("table",)
 ENTRIES = 257

@@ -3,8 +3,8 @@
 
 from typing import Any
 
-from ...gl.constants import Constants
-from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 CAST_ATTRIBUTE = "cast_attribute"
 """The kind that reads an attribute of other surfaces than its own."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes of fibers."""
 
-from ..node_kinds import COLOR, FLOAT, SHADER, VECTOR, NodeKind
+from .node_kinds import COLOR, FLOAT, SHADER, VECTOR, NodeKind
 
 _BSDF = {"bsdf": SHADER}
 

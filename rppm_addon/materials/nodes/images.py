@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Image and environment textures, and photometric profiles."""
 
-from ...gl.constants import Constants
-from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 _INTERPOLATIONS = ("Linear", "Closest", "Cubic", "Smart")
 _EXTENSIONS = ("REPEAT", "EXTEND", "CLIP", "MIRROR")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Arithmetic on numbers and vectors, ranges, and rotations."""
 
-from ...gl.constants import Constants
-from ..node_kinds import BOOLEAN, FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import BOOLEAN, FLOAT, VECTOR, NodeKind
 
 ZERO, ONE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 

@@ -5,7 +5,7 @@ Approximations: a random walk for Christensen-Burley; for the
 physical conductor of the metallic node, the F82 curve that meets its own at normal incidence and at 82 degrees.
 """
 
-from ..node_kinds import BOOLEAN, COLOR, FLOAT, SHADER, VECTOR, NodeKind
+from .node_kinds import BOOLEAN, COLOR, FLOAT, SHADER, VECTOR, NodeKind
 
 
 def _shader(

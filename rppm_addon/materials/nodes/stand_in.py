@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node kind of the stand-ins for materials (materials/stand_in.py), which is no node of Blender's."""
+"""Node kind of the stand-ins for materials (materials/placeholders/stand_in.py), which is no node of Blender's."""
 
-from ..node_kinds import COLOR, FLOAT, SHADER, NodeKind
+from .node_kinds import COLOR, FLOAT, SHADER, NodeKind
 
 KINDS = {
     "plain_surface": NodeKind(

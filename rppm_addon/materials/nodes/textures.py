@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Procedural textures, whose values are those of Cycles 5.0."""
 
-from ...gl.constants import Constants
-from ..node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import BOOLEAN, COLOR, FLOAT, VECTOR, NodeKind
 
 ORIGIN = (0.0, 0.0, 0.0)
 DIMENSIONS = ("1D", "2D", "3D", "4D")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Weights by the angle of view, directions between spaces, and the light falloff by distance."""
 
-from ...gl.constants import Constants
-from ..node_kinds import FLOAT, VECTOR, NodeKind
+from ...gl.buffers.constants import Constants
+from .node_kinds import FLOAT, VECTOR, NodeKind
 
 UP = (0.0, 0.0, 1.0)
 _VECTOR_TYPES = ("POINT", "VECTOR", "NORMAL")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands in for materials (rppm_addon/materials/stand_in.py): little code, compiled in no time.
+// What stands in for materials (rppm_addon/materials/placeholders/stand_in.py): little code, compiled in no time.
 
 #include "materials/lobes.glsl"
 

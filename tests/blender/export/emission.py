@@ -6,8 +6,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.surfaces import surface_attributes  # noqa: F401  declares records that the programs name
 from rppm_addon.materials.tables import MaterialTables
 from rppm_addon.scene import Scene

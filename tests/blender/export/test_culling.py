@@ -5,7 +5,7 @@ import bpy
 import pytest
 from blender_scenes import add_mesh, export, multiply_cubes
 
-from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.blender.export.updates.sync import SceneSync
 
 PLACES = {"seen": (0.0, 0.0, -5.0), "far": (0.0, 0.0, -60.0), "beside": (30.0, 0.0, -5.0), "behind": (0.0, 0.0, 8.0)}
 

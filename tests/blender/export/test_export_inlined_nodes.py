@@ -10,10 +10,10 @@ import bpy
 import pytest
 from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, to_surface
 
+from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext
-from rppm_addon.blender.export.nodes.graphs import HANDLERS, GraphExporter
-from rppm_addon.blender.export.nodes.inlining import readable_tree
-from rppm_addon.blender.export.report import Report
+from rppm_addon.blender.export.shading.nodes.graphs import HANDLERS, GraphExporter
+from rppm_addon.blender.export.shading.nodes.inlining import readable_tree
 
 pytestmark = pytest.mark.skipif(bpy.app.version < (5, 0), reason="Blender 5 is the first that has such nodes")
 

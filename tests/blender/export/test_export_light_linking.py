@@ -5,7 +5,7 @@ import bpy
 import pytest
 from blender_scenes import add_light, add_mesh, export
 
-from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.scene import ALL_SETS, UNLIMITED_BOUNCES, LightLinking, RayVisibility
 
 

@@ -9,8 +9,8 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
 from emission import light_strength
 
-from rppm_addon.blender.export.sync import SceneSync
-from rppm_addon.materials.emitted import light_variation
+from rppm_addon.blender.export.updates.sync import SceneSync
+from rppm_addon.materials.traits.emitted import light_variation
 from rppm_addon.scene import LightKind
 from rppm_addon.scene.meshes import RayVisibility
 

@@ -16,8 +16,8 @@ from blender_scenes import (
     to_surface,
 )
 
-from rppm_addon.blender.export.nodes.graphs import HANDLERS, _own_properties, kind_name, snake_case
-from rppm_addon.materials.compiler import compile_graph
+from rppm_addon.blender.export.shading.nodes.graphs import HANDLERS, _own_properties, kind_name, snake_case
+from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene import Link
 from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_object, export, new_material
 
-from rppm_addon.blender.export.meshes import element_arrays
+from rppm_addon.blender.export.geometry.meshes import element_arrays
 
 
 def naive_arrays(mesh):

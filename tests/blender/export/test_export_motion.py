@@ -8,7 +8,7 @@ from blender_scenes import add_light, add_mesh, add_node, add_object, new_materi
 from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export import SceneSync, export_scene
-from rppm_addon.blender.export.motion import step_times
+from rppm_addon.blender.export.updates.motion import step_times
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import bpy
 import pytest
 from blender_scenes import add_light, export
 
-from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.export.view_layer.settings import export_settings
 from rppm_addon.blender.properties import VIEWPORT_APART, VIEWPORT_DENOISING, VIEWPORT_SAMPLING, viewport_property
 from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilter, RenderSettings
 from rppm_addon.scene.setting_info import settings_of

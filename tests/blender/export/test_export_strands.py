@@ -17,10 +17,10 @@ from blender_scenes import (
 )
 from support.moving import FRAME, animate, blur, taken_scene
 
-from rppm_addon.blender.export.hashing import hashed, hashed_up_to
-from rppm_addon.blender.export.strands import particle_hair, round_meshes, spheres, tubes
-from rppm_addon.blender.export.strands.attributes import CURVE_RANDOM, INTERCEPT, LENGTH, THICKNESS
-from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.blender.export.common.hashing import hashed, hashed_up_to
+from rppm_addon.blender.export.geometry.strands import particle_hair, round_meshes, spheres, tubes
+from rppm_addon.blender.export.geometry.strands.attributes import CURVE_RANDOM, INTERCEPT, LENGTH, THICKNESS
+from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.integrator.surfaces.surface_attributes import SPHERE_REACHES
 from rppm_addon.scene import MeshShape
 from rppm_addon.scene.errors import SceneError

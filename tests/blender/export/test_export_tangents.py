@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from rppm_addon.blender.export.meshes.tangents import corner_tangents, sphere_uv
+from rppm_addon.blender.export.geometry.meshes.tangents import corner_tangents, sphere_uv
 from rppm_addon.scene import Mesh
 
 

@@ -6,11 +6,11 @@ import bpy
 import pytest
 from blender_scenes import add_node, link, new_material
 
+from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext
-from rppm_addon.blender.export.nodes import surface_nodes as nodes  # noqa: F401  registers the handler
-from rppm_addon.blender.export.nodes.graphs import HANDLERS, GraphExporter
-from rppm_addon.blender.export.report import Report
-from rppm_addon.materials.compiler import compile_graph
+from rppm_addon.blender.export.shading.nodes import surface_nodes as nodes  # noqa: F401  registers the handler
+from rppm_addon.blender.export.shading.nodes.graphs import HANDLERS, GraphExporter
+from rppm_addon.materials.compiler.compiler import compile_graph
 
 
 class Disguised:

@@ -12,7 +12,7 @@ from rna_without_bearing import WITHOUT_BEARING
 
 import rppm_addon.blender
 from rppm_addon.blender.export import export_scene, omissions
-from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.scene.passes import PASSES
 from tests.parity.features.report import not_rendered
 

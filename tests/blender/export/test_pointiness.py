@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
-from rppm_addon.blender.export.meshes.pointiness import pointiness
+from rppm_addon.blender.export.geometry.meshes.pointiness import pointiness
 
 
 @pytest.mark.parametrize("split", [False, True], ids=["joined", "split"])

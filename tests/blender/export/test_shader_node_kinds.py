@@ -7,7 +7,7 @@ bpy = pytest.importorskip("bpy")
 
 import numpy as np  # noqa: E402
 
-from rppm_addon.materials.node_kinds import COLOR, FLOAT, VECTOR  # noqa: E402
+from rppm_addon.materials.nodes.node_kinds import COLOR, FLOAT, VECTOR  # noqa: E402
 from rppm_addon.materials.nodes.shaders import KINDS  # noqa: E402
 
 BL_IDNAMES = {

@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from rppm_addon.blender.export.slices import Slices, Unfinished
+from rppm_addon.blender.export.common.slices import Slices, Unfinished
 
 
 def until_done(function, *arguments):

@@ -10,14 +10,14 @@ import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.blender import kept_exports
+from rppm_addon.blender.engine import kept_exports
+from rppm_addon.blender.export.geometry.meshes import meshes
 from rppm_addon.blender.export.images import images
-from rppm_addon.blender.export.meshes import meshes
-from rppm_addon.blender.export.objects import mesh_table
-from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.blender.export.instances import mesh_table
+from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.scene import Camera, Instance, Scene
-from rppm_addon.scene.documents import field_names
-from rppm_addon.scene.sharing import equal
+from rppm_addon.scene.storage.documents import field_names
+from rppm_addon.scene.storage.sharing import equal
 
 CAMERA = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
 

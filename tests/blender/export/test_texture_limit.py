@@ -6,7 +6,7 @@ import numpy as np
 from blender_scenes import add_mesh, add_node, export, link, new_material, to_surface
 
 from rppm_addon.blender.export.images.texture_limit import limited
-from rppm_addon.blender.export.sync import SceneSync
+from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.scene import Image
 
 

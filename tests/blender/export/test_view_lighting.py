@@ -10,8 +10,8 @@ import pytest
 from blender_scenes import add_light, add_node, export, link, set_world
 from emission import HEIGHT, world_map
 
-from rppm_addon.blender import studio_lights
-from rppm_addon.blender.export.lights.view_lighting import ViewLighting, blurred_panorama, relit, view_lighting
+from rppm_addon.blender.engine import studio_lights
+from rppm_addon.blender.export.shading.lights.view_lighting import ViewLighting, blurred_panorama, relit, view_lighting
 from rppm_addon.scene import Image
 
 SKY = 0.25

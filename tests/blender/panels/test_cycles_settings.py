@@ -3,8 +3,8 @@
 
 import bpy
 
-from rppm_addon.blender.export.passes import OF_CYCLES
-from rppm_addon.blender.panels.cycles_settings import SHARED
+from rppm_addon.blender.export.view_layer.passes import OF_CYCLES
+from rppm_addon.blender.panels.render_tab.cycles_settings import SHARED
 
 
 def test_from_cycles_and_back(scene):

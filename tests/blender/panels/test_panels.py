@@ -9,18 +9,20 @@ import pytest
 from blender_scenes import add_light, add_mesh, add_object, new_material, set_world
 from drawing import RecordingLayout, context_of, drawn, drawn_panels
 
-from rppm_addon.blender import panels, renderer_process, reports
-from rppm_addon.blender.export.settings import export_settings
-from rppm_addon.blender.panels import presets, viewport_header
+from rppm_addon.blender import panels, reports
+from rppm_addon.blender.export.view_layer.settings import export_settings
+from rppm_addon.blender.panels import viewport_header
 from rppm_addon.blender.panels.base import RppmPanel
+from rppm_addon.blender.panels.render_tab import presets
 from rppm_addon.blender.panels.switches import SUGGESTIONS
+from rppm_addon.blender.render_client import renderer_process
 from rppm_addon.blender.reports import RenderKind, RenderReport
 from rppm_addon.integrator.density_estimation.radii import shrinkage
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.scene import RenderSettings
-from rppm_addon.scene.quantities import bytes_text
-from rppm_addon.session.process.client import ProcessState
+from rppm_addon.scene.common.quantities import bytes_text
+from rppm_addon.session.transport.client import ProcessState
 
 OF_SWITCH = {
     "adaptive_min_samples": "RPPM_PT_sampling_final",

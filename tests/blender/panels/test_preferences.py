@@ -11,10 +11,11 @@ import bpy
 import pytest
 from drawing import drawn
 
-from rppm_addon.blender import operators, preferences, renderer_process
+from rppm_addon.blender import operators, preferences
 from rppm_addon.blender.preferences import RppmPreferences
-from rppm_addon.gl.context import DeviceInformation
-from rppm_addon.session.process.client import ProcessState
+from rppm_addon.blender.render_client import renderer_process
+from rppm_addon.gl.context.context import DeviceInformation
+from rppm_addon.session.transport.client import ProcessState
 
 ROOT = Path(__file__).resolve().parents[3]
 

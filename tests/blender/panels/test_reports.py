@@ -12,15 +12,15 @@ from blender_scenes import add_light, add_mesh, add_node, export, link, new_mate
 from drawing import context_of, drawn
 
 from rppm_addon.blender import panels, reports
-from rppm_addon.blender.export.settings import export_settings
+from rppm_addon.blender.export.view_layer.settings import export_settings
 from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_allocation, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.scene import RenderSettings
-from rppm_addon.session.process.client import RendererProcess
-from rppm_addon.session.process.sessions import SessionKind, SessionStatus
+from rppm_addon.session.transport.client import RendererProcess
+from rppm_addon.session.transport.sessions import SessionKind, SessionStatus
 
 
 @pytest.fixture(autouse=True)

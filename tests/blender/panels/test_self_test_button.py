@@ -7,7 +7,8 @@ import bpy
 import pytest
 from drawing import RecordingLayout
 
-from rppm_addon.blender import renderer_process, self_test
+from rppm_addon.blender import self_test
+from rppm_addon.blender.render_client import renderer_process
 
 
 @pytest.fixture

@@ -9,11 +9,12 @@ import OpenEXR
 import pytest
 from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
 
-from rppm_addon.blender import frame_reuse, renderer_thread
+from rppm_addon.blender.engine import frame_reuse
+from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.surfaces.geometry import Geometry
-from rppm_addon.session.observers import RenderObserver, observing
+from rppm_addon.session.render.observers import RenderObserver, observing
 
 LAST = 6
 

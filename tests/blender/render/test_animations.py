@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from animations import ANIMATIONS, FRAMES, nothing, stage
 
-from rppm_addon.blender import engine as engine_module
+from rppm_addon.blender.engine import engine as engine_module
 from rppm_addon.blender.export import SceneSync, export_scene
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
-from rppm_addon.session.observers import RenderObserver, observing
-from rppm_addon.session.renderer import read_frame
-from rppm_addon.session.results import Frame
+from rppm_addon.session.render.observers import RenderObserver, observing
+from rppm_addon.session.render.renderer import read_frame
+from rppm_addon.session.render.results import Frame
 
 ITERATIONS = 3
 

@@ -8,9 +8,10 @@ from blender_scenes import add_light, add_mesh, add_node, new_material, to_surfa
 from support.baking import add_uv_map, aim_at, bake, select
 from test_engine import Proxy
 
-from rppm_addon.blender import baking, renderer_thread
-from rppm_addon.blender import engine as engine_module
-from rppm_addon.blender.export.baking import nearest_texels
+from rppm_addon.blender.engine import baking
+from rppm_addon.blender.engine import engine as engine_module
+from rppm_addon.blender.export.updates.baking import nearest_texels
+from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.scene.errors import DeviceError
 
 SLOPE = ([(-1, -1, 0), (1, -1, 0), (1, 1, 2), (-1, 1, 2)], [(0, 1, 2, 3)])

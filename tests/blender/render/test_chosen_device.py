@@ -8,8 +8,9 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from rppm_addon.blender import chosen_device, preferences, renderer_process
-from rppm_addon.gl.devices import Device
+from rppm_addon.blender import preferences
+from rppm_addon.blender.render_client import chosen_device, renderer_process
+from rppm_addon.gl.context.devices import Device
 
 
 @pytest.fixture

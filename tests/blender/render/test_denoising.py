@@ -10,12 +10,13 @@ import pytest
 from drawing import context_of, drawn
 from test_engine import render_exr
 
-from rppm_addon.blender import denoising_libraries as libraries_module
-from rppm_addon.blender import preferences, renderer_process, renderer_thread
-from rppm_addon.blender.denoising_libraries import denoising_libraries
-from rppm_addon.blender.panels import sampling
+from rppm_addon.blender import preferences
+from rppm_addon.blender.panels.render_tab import sampling
+from rppm_addon.blender.render_client import denoising_libraries as libraries_module
+from rppm_addon.blender.render_client import renderer_process, renderer_thread
+from rppm_addon.blender.render_client.denoising_libraries import denoising_libraries
 from rppm_addon.denoising.places import Source
-from rppm_addon.session.process.client import ProcessState
+from rppm_addon.session.transport.client import ProcessState
 
 PANELS = (sampling.RPPM_PT_sampling_viewport_denoise, sampling.RPPM_PT_sampling_final_denoise)
 
@@ -53,7 +54,7 @@ def test_a_final_render_has_both_pictures(lit, tmp_path):
 
 def test_without_a_library_it_renders_and_warns(lit, tmp_path, without_libraries, monkeypatch):
     said = []
-    monkeypatch.setattr("rppm_addon.blender.final.report_warnings", lambda engine, texts: said.extend(texts))
+    monkeypatch.setattr("rppm_addon.blender.engine.final.report_warnings", lambda engine, texts: said.extend(texts))
     layers = render_exr(noisy_scene(lit), tmp_path)
     np.testing.assert_array_equal(layers["ViewLayer.Combined"], layers["ViewLayer.Noisy Image"])
     assert any("the picture is not denoised" in text and "pyoidn" in text for text in said)

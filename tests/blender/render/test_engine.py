@@ -11,12 +11,13 @@ import pytest
 from blender_scenes import set_world
 from PIL import Image as Picture
 
-from rppm_addon.blender import engine as engine_module
-from rppm_addon.blender import final, renderer_thread
+from rppm_addon.blender.engine import engine as engine_module
+from rppm_addon.blender.engine import final
+from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.scene.errors import DeviceError
-from rppm_addon.session import renderer as session_renderer
-from rppm_addon.session.checkpoint_file import read_summary
-from rppm_addon.session.observers import RenderObserver, observing
+from rppm_addon.session.checkpoints.checkpoint_file import read_summary
+from rppm_addon.session.render import renderer as session_renderer
+from rppm_addon.session.render.observers import RenderObserver, observing
 
 
 def render_exr(scene, folder, **arguments):

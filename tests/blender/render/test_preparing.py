@@ -7,10 +7,11 @@ import bpy
 import pytest
 from blender_scenes import add_mesh, add_node, add_object, export, link, new_material, to_surface
 
-from rppm_addon.blender import preparing, renderer_process
+from rppm_addon.blender.engine import preparing
 from rppm_addon.blender.export.images import images
-from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.known_programs import programs_of
+from rppm_addon.blender.render_client import renderer_process
+from rppm_addon.session.placeholders.known_programs import programs_of
+from rppm_addon.session.transport.client import ProcessState
 
 
 @pytest.fixture

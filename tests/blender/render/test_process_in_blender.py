@@ -13,10 +13,10 @@ from support.baking import add_uv_map, bake
 from support.sent_members import watch_sent_members
 
 import rppm_addon
-from rppm_addon.blender import renderer_process, renderer_thread
-from rppm_addon.session.observers import RenderObserver, observing
-from rppm_addon.session.process.client import ProcessState
-from rppm_addon.session.process.sessions import SessionKind
+from rppm_addon.blender.render_client import renderer_process, renderer_thread
+from rppm_addon.session.render.observers import RenderObserver, observing
+from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.transport.sessions import SessionKind
 
 
 @pytest.fixture

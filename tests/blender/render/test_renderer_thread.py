@@ -6,10 +6,10 @@ import threading
 import numpy as np
 import pytest
 
-from rppm_addon.blender.renderer_thread import RendererThread, RenderJob
+from rppm_addon.blender.render_client.renderer_thread import RendererThread, RenderJob
 from rppm_addon.scene import Camera, Scene
-from rppm_addon.session import renderer as session_renderer
-from rppm_addon.session.renderer import Progress
+from rppm_addon.session.render import renderer as session_renderer
+from rppm_addon.session.render.renderer import Progress
 
 
 class FakeRenderer:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rppm_addon.pictures import PictureName
-from rppm_addon.session.checkpoint_file import read_summary
-from rppm_addon.session.observers import RenderObserver, observing
+from rppm_addon.session.checkpoints.checkpoint_file import read_summary
+from rppm_addon.session.render.observers import RenderObserver, observing
 
 DISTANCE = 0.2
 

@@ -11,7 +11,7 @@ from deep_cubemap_rays import KINDS, make_rays
 from deep_cubemap_scenes import CENTERS, furnished_room, room_with_meshes
 from moving_scenes import everything_moves
 
-from rppm_addon.gl.context import Context
+from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.bvh import bvh, clustering
 from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
 from rppm_addon.integrator.device_scene.acceleration import Acceleration

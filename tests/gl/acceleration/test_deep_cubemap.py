@@ -10,7 +10,7 @@ from deep_cubemap_reference import Reference
 from deep_cubemap_scenes import CENTERS, box, furnished_room, room_with_meshes
 from support.families import some_each_time
 
-from rppm_addon.gl.context import Context
+from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap import deep_cubemap
 from rppm_addon.scene.errors import DeviceError

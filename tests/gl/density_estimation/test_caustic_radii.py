@@ -9,7 +9,7 @@ from busy_scenes import busy_room
 from support.iteration_block import iteration_buffer
 from support.render_states import run_until
 
-from rppm_addon.gl.timers import StageTimers
+from rppm_addon.gl.context.timers import StageTimers
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.common.records.importons import IMPORTON, GatherFlag
 from rppm_addon.integrator.common.stage_sizes import StageSizes

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from support.iteration_block import iteration_buffer
 
-from rppm_addon.gl.buffers import GrowingBuffer
+from rppm_addon.gl.buffers.buffers import GrowingBuffer
 from rppm_addon.integrator.common.active_paths import ActivePaths
 from rppm_addon.integrator.common.records.importons import IMPORTON, GatherFlag
 from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PHOTON_ORIGIN, PhotonFlag

@@ -9,11 +9,11 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 from test_convergence import blurred, floor_radiance, lit_floor, pixel_points
 
+from rppm_addon.integrator.camera_paths.gbuffer import filter_offsets
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
-from rppm_addon.integrator.stages.gbuffer import filter_offsets
 from rppm_addon.scene import DirectLight, Scene
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 
 def busy_room(direct_light: DirectLight, seed: int = 3) -> Scene:

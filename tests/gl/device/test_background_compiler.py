@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from rppm_addon.gl import background_compiler
-from rppm_addon.gl.background_compiler import BackgroundCompiler, EmptyDispatch
-from rppm_addon.gl.sources import Source
+from rppm_addon.gl.programs import background_compiler
+from rppm_addon.gl.programs.background_compiler import BackgroundCompiler, EmptyDispatch
+from rppm_addon.gl.programs.sources import Source
 
 
 class Driver:

@@ -6,12 +6,12 @@ import itertools
 import numpy as np
 import pytest
 
-from rppm_addon.gl import binary_cache, sources
-from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.programs import ProgramLibrary
-from rppm_addon.gl.records import Record
-from rppm_addon.integrator.stages import stage_set  # noqa: F401  registers the records
+from rppm_addon.gl.buffers.buffers import GrowingBuffer
+from rppm_addon.gl.buffers.records import Record
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs import binary_cache, sources
+from rppm_addon.gl.programs.programs import ProgramLibrary
+from rppm_addon.integrator import stage_set  # noqa: F401  registers the records
 from rppm_addon.scene.errors import DeviceError
 
 KINDS = ("float", "uint", "int", "vec2", "vec3", "vec4", "uvec2", "uvec3", "uvec4", "ivec2", "ivec3", "ivec4", "mat4")

@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from rppm_addon.gl import sources
-from rppm_addon.gl.programs import ProgramLibrary
+from rppm_addon.gl.programs import sources
+from rppm_addon.gl.programs.programs import ProgramLibrary
 
 PROGRAM = """#version 430 core
 layout(local_size_x = 64) in;

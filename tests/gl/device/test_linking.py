@@ -6,8 +6,8 @@ import uuid
 
 import pytest
 
-from rppm_addon.gl.linking import Linker
-from rppm_addon.gl.sources import CompileError, Source
+from rppm_addon.gl.programs.linking import Linker
+from rppm_addon.gl.programs.sources import CompileError, Source
 
 _HEAD = """#version 430 core
 layout(local_size_x = 1) in;

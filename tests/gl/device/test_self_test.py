@@ -11,7 +11,7 @@ from rppm_addon.self_test import checks, report
 from rppm_addon.self_test.checks import BLOCK_TOLERANCE, MEAN_TOLERANCE, Finding, Speed, differences
 from rppm_addon.self_test.ray_queries import TracedTriangles
 from rppm_addon.self_test.report import SelfTest, report_text, run_self_test
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 SPEED = Speed(1.0, 0.1, 0.01, 1e6, {"tracing": 2.0, "splatting": 1.0})
 

@@ -4,14 +4,14 @@
 import numpy as np
 import pytest
 
-from rppm_addon.gl import sources
-from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.gl.programs import ComputeProgram, ProgramLibrary, ProgramMaker
-from rppm_addon.gl.records import Record
-from rppm_addon.gl.sources import expand
-from rppm_addon.gl.storage_blocks import StorageBlock
-from rppm_addon.gl.texel_buffers import MOST_ADDED, allocated_size
-from rppm_addon.gl.texel_sources import MOST_IMAGES
+from rppm_addon.gl.buffers.buffers import GrowingBuffer
+from rppm_addon.gl.buffers.records import Record
+from rppm_addon.gl.buffers.storage_blocks import StorageBlock
+from rppm_addon.gl.buffers.texel_buffers import MOST_ADDED, allocated_size
+from rppm_addon.gl.programs import sources
+from rppm_addon.gl.programs.programs import ComputeProgram, ProgramLibrary, ProgramMaker
+from rppm_addon.gl.programs.sources import expand
+from rppm_addon.gl.programs.texel_sources import MOST_IMAGES
 from rppm_addon.scene.errors import DeviceError
 
 COUNT = 37

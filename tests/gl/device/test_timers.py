@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from rppm_addon.gl.context import Context
-from rppm_addon.gl.timers import StageTimers
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.context.timers import StageTimers
 
 
 def test_software_stages_are_timed_by_the_clock(context):

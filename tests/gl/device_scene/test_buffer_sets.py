@@ -7,8 +7,8 @@ import moderngl
 import pytest
 
 from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer
-from rppm_addon.gl.buffers import SMALLEST
-from rppm_addon.gl.context import Context
+from rppm_addon.gl.buffers.buffers import SMALLEST
+from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.common.active_paths import PathList
 from rppm_addon.integrator.common.records.rays import RAY
 from rppm_addon.scene.errors import DeviceError

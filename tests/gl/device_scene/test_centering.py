@@ -9,7 +9,7 @@ import scenes
 from moving_scenes import everything_moves
 
 from rppm_addon.integrator.device_scene.centering import CELL, Centering
-from rppm_addon.integrator.first_look import FirstLook
+from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.integrator.viewport.reprojection import Reprojection
 from rppm_addon.scene import (
     AovOutput,

@@ -8,7 +8,7 @@ import pytest
 import scenes
 from packed_normals import unpack
 
-from rppm_addon.gl.buffers import GrowingBuffer
+from rppm_addon.gl.buffers.buffers import GrowingBuffer
 from rppm_addon.integrator.common.records.triangles import TRIANGLE_ATTRIBUTES
 from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.scene import Camera, Instance, Scene

@@ -21,7 +21,7 @@ from rppm_addon.scene import (
     RenderSettings,
     Scene,
 )
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 
 def room(**settings: object) -> Scene:

@@ -7,8 +7,8 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
-from rppm_addon.session.process.viewport_renderer import shown_picture
-from rppm_addon.session.renderer import read_combined
+from rppm_addon.session.render.renderer import read_combined
+from rppm_addon.session.viewport.viewport_renderer import shown_picture
 
 
 def behind_a_pane(material: Material, floor: bool = True) -> Scene:

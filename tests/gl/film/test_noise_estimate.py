@@ -9,12 +9,12 @@ import pytest
 import scenes
 from support.render_states import assert_same_array, assert_same_state
 
-from rppm_addon.gl.buffers import SMALLEST
+from rppm_addon.gl.buffers.buffers import SMALLEST
 from rppm_addon.integrator.common import band
+from rppm_addon.integrator.film.noise_estimate import BLOCK, LEAST_MEASURED, MEASURED_EVERY, is_in_half
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.integrator.stages.noise_estimate import BLOCK, LEAST_MEASURED, MEASURED_EVERY, is_in_half
 from rppm_addon.scene.errors import CheckpointError
-from rppm_addon.session.continuation import Continuation
+from rppm_addon.session.checkpoints.continuation import Continuation
 
 WIDTH, HEIGHT, EXPOSURE, THRESHOLD = 40, 24, 1.5, 0.06
 

@@ -10,7 +10,7 @@ from support.lobes import Lobe, LobeKind, material
 from test_light_sampling import light_samples
 from test_light_sources import floor_scene
 
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.scene import DirectLight, Instance, Light, LightKind, World
 

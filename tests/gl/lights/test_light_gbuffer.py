@@ -11,8 +11,8 @@ from busy_scenes import SCENES, busy, wide
 from photon_hits import both_hits
 
 from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
-from rppm_addon.integrator.stages import first_hits, light_gbuffer
-from rppm_addon.integrator.stages.first_hits import FirstHits
+from rppm_addon.integrator.photons import first_hits, light_gbuffer
+from rppm_addon.integrator.photons.first_hits import FirstHits
 from rppm_addon.scene import FirstPhotonHits, Instance, Light, LightKind, Scene
 
 PHOTONS = 16384

@@ -12,7 +12,7 @@ from support.families import some_each_time
 from support.lobes import Lobe, LobeKind, material
 from test_light_sources import floor_scene
 
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.lights.light_entry import spread_constants
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper

@@ -10,7 +10,7 @@ import pytest
 import scenes
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.materials import compiler
+from rppm_addon.materials.compiler import compiler
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.scene import AttributeDomain, Image, Material, MeshAttribute, NodeGraph, Scene
 

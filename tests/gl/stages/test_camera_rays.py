@@ -6,12 +6,12 @@ import pytest
 import scenes
 from support.iteration_block import iteration_buffer
 
-from rppm_addon.gl.sources import expand
+from rppm_addon.gl.programs.sources import expand
+from rppm_addon.integrator.camera_paths.gbuffer import GBuffer
+from rppm_addon.integrator.camera_paths.primary_rays import PrimaryRays
 from rppm_addon.integrator.common.camera_view import CAMERA_VIEW, camera_view
 from rppm_addon.integrator.common.records.camera_paths import CAMERA_PATH
 from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
-from rppm_addon.integrator.stages.gbuffer import GBuffer
-from rppm_addon.integrator.stages.primary_rays import PrimaryRays
 from rppm_addon.scene import (
     Aperture,
     Camera,

@@ -8,11 +8,11 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
+from rppm_addon.integrator.camera_paths import final_gather
+from rppm_addon.integrator.camera_paths.coverage import Coverage
+from rppm_addon.integrator.camera_paths.final_gather import GATHERING_VERTEX
 from rppm_addon.integrator.density_estimation import radii
-from rppm_addon.integrator.stages import final_gather
-from rppm_addon.integrator.stages.coverage import Coverage
-from rppm_addon.integrator.stages.final_gather import GATHERING_VERTEX
-from rppm_addon.integrator.stages.photons import Photons
+from rppm_addon.integrator.photons.photons import Photons
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 
 SIZE, SEEDS = 48, 8

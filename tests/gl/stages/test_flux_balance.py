@@ -6,7 +6,7 @@ import pytest
 
 from rppm_addon.integrator.common.records.photon_paths import PHOTON_PATH
 from rppm_addon.integrator.common.stage_sizes import StageSizes
-from rppm_addon.integrator.stages.photons import FLUX_GROUP, FLUX_NAMES, Photons
+from rppm_addon.integrator.photons.photons import FLUX_GROUP, FLUX_NAMES, Photons
 
 PATHS = 3 * FLUX_GROUP + 7
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.gl import pacing as pacing_module
-from rppm_addon.gl.pacing import Pace, Pacing
+from rppm_addon.gl.context import pacing as pacing_module
+from rppm_addon.gl.context.pacing import Pace, Pacing
 from rppm_addon.scene import DensityEstimation
 
 

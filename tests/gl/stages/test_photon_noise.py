@@ -10,7 +10,7 @@ from support.render_states import assert_same_state, run_until
 
 from rppm_addon.integrator.common import band
 from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
-from rppm_addon.integrator.stages import photon_noise
+from rppm_addon.integrator.film import photon_noise
 from rppm_addon.scene import Instance, Light, LightKind, Scene
 
 FRAMES, FRAME_ITERATIONS = 24, 6

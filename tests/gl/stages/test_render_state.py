@@ -15,7 +15,7 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import DirectLight
 from rppm_addon.scene.errors import CheckpointError
 from rppm_addon.scene.passes import FILM_PASSES
-from rppm_addon.session.merged_passes import MergedPasses
+from rppm_addon.session.render.merged_passes import MergedPasses
 
 LAST = LEARNING_ITERATIONS + 3
 STOPS = (1, 2, 3, 7, 16, 17)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.records.closures import MicrofacetKind
 from rppm_addon.materials import albedo_tables
 

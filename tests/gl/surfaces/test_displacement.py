@@ -7,8 +7,8 @@ import weakref
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.first_look import FirstLook
 from rppm_addon.integrator.surfaces.displacement import Displacement
+from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.materials.tables import MaterialTables
 from rppm_addon.scene import (
     AttributeDomain,

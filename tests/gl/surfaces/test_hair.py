@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.records.closures import MicrofacetKind
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene, World

@@ -9,7 +9,7 @@ import pytest
 import scenes
 from support.render_states import assert_goes_on
 
-from rppm_addon.gl.records import Record
+from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.surfaces.node_rays import NODE_RAY
 from rppm_addon.scene import (
     AovOutput,

@@ -8,10 +8,10 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.first_look import FirstLook
+from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.scene import RenderSettings, Scene, World
 from rppm_addon.scene.meshes import Instance, RayVisibility
-from rppm_addon.session.process import first_looks
+from rppm_addon.session.placeholders import first_looks
 
 SIZE = 96
 RED, GREEN = (0.8, 0.05, 0.05), (0.05, 0.8, 0.05)

@@ -10,13 +10,13 @@ from support.floor import floor_scene
 
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.common.viewport_demands import ViewportDemands
-from rppm_addon.integrator.first_look import FirstLook
+from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.integrator.viewport.noise_filter import MOST_SAMPLES, strength
 from rppm_addon.integrator.viewport.pictures import ViewportPictures, demands_of, expected_bytes
 from rppm_addon.integrator.viewport.reprojection import HISTORY_ENDS, differ_by_view
 from rppm_addon.scene import Light, LightKind
 from rppm_addon.scene.scene import Scene
-from rppm_addon.session.process.resolution_scaler import at_level
+from rppm_addon.session.placeholders.resolution_scaler import at_level
 
 FILTERED = ViewportDemands(is_filtered=True)
 SIZE = 48

@@ -63,7 +63,7 @@ def show_preferences() -> None:
 
 
 def _renderer_process() -> types.ModuleType:
-    return importlib.import_module(f"{_addon()}.rppm_addon.blender.renderer_process")
+    return importlib.import_module(f"{_addon()}.rppm_addon.blender.render_client.renderer_process")
 
 
 def end_renderer() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from rppm_addon.blender.export import export_scene
 from rppm_addon.scene import Scene
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 from ..comparison import _squared_error, block_means
 from ..scenes import render_cycles

@@ -18,7 +18,7 @@ from PIL import Image, ImageDraw
 
 import rppm_addon
 from rppm_addon.blender.export import omissions
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 from ..comparison import OUTPUT
 from .measure import Measurement, encoded, measure, shortcomings, white_of

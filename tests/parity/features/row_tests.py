@@ -5,7 +5,7 @@ from collections.abc import Collection
 
 import pytest
 
-from rppm_addon.session.renderer import Renderer
+from rppm_addon.session.render.renderer import Renderer
 
 from .measure import measure, shortcomings
 from .rows import Row

@@ -9,7 +9,7 @@ import pytest
 
 PROGRAM = """
 import ctypes, sys
-from rppm_addon.commands.interruption import Interruption
+from rppm_addon.commands.terminal.interruption import Interruption
 with Interruption() as interruption:
     interruption.has_work = lambda: {has_work}
     print("entered", flush=True)

@@ -3,8 +3,8 @@
 
 import pytest
 
-from rppm_addon.commands.arguments import parser
-from rppm_addon.commands.options import values_and_limits
+from rppm_addon.commands.options.arguments import parser
+from rppm_addon.commands.options.options import values_and_limits
 from rppm_addon.scene import PixelFilter, RenderSettings
 from rppm_addon.scene.errors import SettingsError
 from rppm_addon.scene.setting_info import settings_of

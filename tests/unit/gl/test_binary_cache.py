@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from rppm_addon.gl import binary_cache
-from rppm_addon.gl.binary_cache import BinaryCache, pack_entry, unpack_entry
+from rppm_addon.gl.programs import binary_cache
+from rppm_addon.gl.programs.binary_cache import BinaryCache, pack_entry, unpack_entry
 
 KEY, OTHER = b"k" * 32, b"o" * 32
 

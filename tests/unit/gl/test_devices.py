@@ -3,10 +3,10 @@
 
 import pytest
 
-from rppm_addon.gl import context as context_module
-from rppm_addon.gl.context import Context, driver_version, short_name
-from rppm_addon.gl.devices import Device, choose, list_devices
-from rppm_addon.gl.kernel_devices import DeviceKind, kernel_device
+from rppm_addon.gl.context import context as context_module
+from rppm_addon.gl.context.context import Context, driver_version, short_name
+from rppm_addon.gl.context.devices import Device, choose, list_devices
+from rppm_addon.gl.context.kernel_devices import DeviceKind, kernel_device
 from rppm_addon.scene.errors import DeviceError
 
 CHIP = Device(0, "8086:9a49@0000:00:02.0", "integrated", "Chip")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Functions of shaders that nothing calls."""
 
-from rppm_addon.gl.functions import put_together
-from rppm_addon.gl.sources import expand
+from rppm_addon.gl.programs.functions import put_together
+from rppm_addon.gl.programs.sources import expand
 
 SHADER = """#version 430 core
 #define TWICE(x) twice_of(x)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from rppm_addon.gl import project_mesa
-from rppm_addon.gl.context import DeviceInformation
+from rppm_addon.gl.context import project_mesa
+from rppm_addon.gl.context.context import DeviceInformation
 from rppm_addon.scene.errors import DeviceError
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -123,7 +123,9 @@ def test_a_label_has_the_version_of_the_driver(driver, label):
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="Mesa is the driver on Linux only")
 def test_a_process_takes_the_chosen_mesa():
     """The chosen Mesa is the one that is unpacked in this checkout, if any; else the system's."""
-    program = "from rppm_addon.gl.context import device_information as d; print(d().driver_folder); print(d().driver)"
+    program = (
+        "from rppm_addon.gl.context.context import device_information as d; print(d().driver_folder); print(d().driver)"
+    )
 
     def told(**environment):
         command = [sys.executable, "-c", program]

@@ -7,8 +7,8 @@ import re
 import pytest
 from support.shader_declarations import import_declarations
 
-from rppm_addon.gl.constants import Constants
-from rppm_addon.gl.sources import SHADER_FOLDER
+from rppm_addon.gl.buffers.constants import Constants
+from rppm_addon.gl.programs.sources import SHADER_FOLDER
 
 import_declarations()
 SHADERS = {

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from support.shader_declarations import variants
 
-from rppm_addon.gl import sources
-from rppm_addon.gl.records import Record
-from rppm_addon.gl.requirements import NEEDS, refuse_small_devices
-from rppm_addon.gl.sources import SHADER_FOLDER, ShaderError, expand
-from rppm_addon.gl.storage_blocks import StorageBlock
+from rppm_addon.gl.buffers.records import Record
+from rppm_addon.gl.buffers.storage_blocks import StorageBlock
+from rppm_addon.gl.context.requirements import NEEDS, refuse_small_devices
+from rppm_addon.gl.programs import sources
+from rppm_addon.gl.programs.sources import SHADER_FOLDER, ShaderError, expand
 from rppm_addon.scene.errors import DeviceError
 
 MOST_BLOCKS = 16

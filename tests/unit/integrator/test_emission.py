@@ -12,7 +12,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.lights.environment import distribution_of
 from rppm_addon.integrator.lights.light_entry import spot_share, spread_constants, spread_share
 from rppm_addon.integrator.lights.lights import share_out
-from rppm_addon.materials.emitted import Emits, emits
+from rppm_addon.materials.traits.emitted import Emits, emits
 
 
 @settings(deadline=None, derandomize=True)

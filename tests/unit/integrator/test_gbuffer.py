@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
+from rppm_addon.integrator.camera_paths.gbuffer import filter_offsets
 from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS, bands_of
 from rppm_addon.integrator.common.camera_view import camera_view
-from rppm_addon.integrator.stages.gbuffer import filter_offsets
 from rppm_addon.scene import Camera, PixelFilter
 from rppm_addon.scene.errors import SceneError
 

@@ -10,7 +10,7 @@ from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS, MOST_RASTER_P
 from rppm_addon.integrator.common.camera_view import is_rasterized
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.integrator.stages.stage_set import StageSet
+from rppm_addon.integrator.stage_set import StageSet
 from rppm_addon.scene.camera import Camera
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.scene.passes import PASSES

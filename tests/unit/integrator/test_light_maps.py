@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rppm_addon.integrator.lights.light_maps import _bordered, _mean, _packed
-from rppm_addon.materials.emitted import light_variation
 from rppm_addon.materials.evaluation import MapShape
+from rppm_addon.materials.traits.emitted import light_variation
 from rppm_addon.scene import Light, LightKind, NodeGraph
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.integrator.lights.light_records import LIGHT, LightShape
-from rppm_addon.integrator.stages.light_gbuffer import light_views, views_side
+from rppm_addon.integrator.photons.light_gbuffer import light_views, views_side
 
 CENTER, RADIUS = np.array([1.0, 2.0, 3.0]), 5.0
 

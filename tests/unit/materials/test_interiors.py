@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Volumes' node graphs taken apart."""
 
-from rppm_addon.materials.interiors import Interior
+from rppm_addon.materials.traits.interiors import Interior
 from rppm_addon.scene import NodeGraph
 
 

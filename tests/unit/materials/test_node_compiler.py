@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.every_node import programs
 
-from rppm_addon.materials import compiler
-from rppm_addon.materials.compiler import MOST_NODE_RAYS, GraphError, NodeRayCounts, Resource, compile_graph
+from rppm_addon.materials.compiler import compiler
+from rppm_addon.materials.compiler.compiler import MOST_NODE_RAYS, GraphError, NodeRayCounts, Resource, compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
 from rppm_addon.scene.passes import aov_passes
 

@@ -3,8 +3,8 @@
 
 import re
 
-from rppm_addon.materials.compiler import compile_graph
-from rppm_addon.materials.pieces import PIECE, in_pieces
+from rppm_addon.materials.compiler.compiler import compile_graph
+from rppm_addon.materials.compiler.pieces import PIECE, in_pieces
 from rppm_addon.scene import NodeGraph
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.materials.nodes import KINDS
-from rppm_addon.materials.plain_surface import GLASS_OPACITY, mean_color, plain_surface
+from rppm_addon.materials.placeholders.plain_surface import GLASS_OPACITY, mean_color, plain_surface
 from rppm_addon.scene import Image, Link, NodeGraph
 
 RED, BLUE = (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)

@@ -4,11 +4,11 @@
 import numpy as np
 import pytest
 
-from rppm_addon.materials.compiler import compile_graph
-from rppm_addon.materials.emitted import Emits, emits
+from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.nodes import KINDS
-from rppm_addon.materials.plain_surface import plain_surface
-from rppm_addon.materials.stand_in import stand_in_graph
+from rppm_addon.materials.placeholders.plain_surface import plain_surface
+from rppm_addon.materials.placeholders.stand_in import stand_in_graph
+from rppm_addon.materials.traits.emitted import Emits, emits
 from rppm_addon.scene import Image, NodeGraph
 
 RED = (1.0, 0.0, 0.0)

@@ -3,8 +3,8 @@
 
 import pytest
 
-from rppm_addon.materials.compiler import compile_graph
-from rppm_addon.materials.subsurface import has_subsurface
+from rppm_addon.materials.compiler.compiler import compile_graph
+from rppm_addon.materials.traits.subsurface import has_subsurface
 from rppm_addon.scene import NodeGraph
 
 

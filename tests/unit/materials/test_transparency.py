@@ -3,7 +3,7 @@
 
 import pytest
 
-from rppm_addon.materials.transparency import asks_for_shadow_rays, passes_shadow_rays
+from rppm_addon.materials.traits.transparency import asks_for_shadow_rays, passes_shadow_rays
 from rppm_addon.scene.node_graphs import NodeGraph
 
 

@@ -4,7 +4,7 @@
 import pytest
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.materials.view_dependence import depends_on_view
+from rppm_addon.materials.traits.view_dependence import depends_on_view
 from rppm_addon.scene import NodeGraph
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from rppm_addon.materials import dispersion
 from rppm_addon.materials.colorimetry import COLOR_MATCHING, WAVELENGTHS
-from rppm_addon.materials.compiler import compile_graph
+from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.dispersion import LINE_C, LINE_D, LINE_F, index_shift
 from rppm_addon.scene import NodeGraph
 

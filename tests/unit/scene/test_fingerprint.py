@@ -9,8 +9,8 @@ import pytest
 from support.full_scene import full_scene
 
 from rppm_addon.scene import DirectLight, RenderSettings, load_scene, save_scene
-from rppm_addon.scene.fingerprint import UNSEEN, plain_settings, scene_digests
 from rppm_addon.scene.meshes import Dicing, MeshShape
+from rppm_addon.scene.storage.fingerprint import UNSEEN, plain_settings, scene_digests
 
 
 def test_a_scene_that_was_saved_is_the_same(tmp_path):

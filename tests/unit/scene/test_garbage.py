@@ -5,7 +5,7 @@ import gc
 
 import pytest
 
-from rppm_addon.scene.garbage import collector_paused
+from rppm_addon.scene.common.garbage import collector_paused
 
 
 def test_pauses_may_be_nested():

@@ -13,8 +13,9 @@ import pytest
 from support.floor import floor_scene
 from support.full_scene import assert_same, full_scene
 
-from rppm_addon.scene import load_scene, save_scene, storage
+from rppm_addon.scene import load_scene, save_scene
 from rppm_addon.scene.errors import SceneError
+from rppm_addon.scene.storage import storage
 
 
 def array_bytes(array):

@@ -11,8 +11,8 @@ from support.floor import floor_scene
 
 from rppm_addon.integrator.device_scene.shutter import moment, swept_bounds
 from rppm_addon.scene import CameraMovement, Deformation, Light, LightKind, Movement, MovingScene, Scene, Shutter
-from rppm_addon.scene.sharing import equal, same_members, share
-from rppm_addon.scene.storage import load_scene, save_scene
+from rppm_addon.scene.storage.sharing import equal, same_members, share
+from rppm_addon.scene.storage.storage import load_scene, save_scene
 
 ENDS = np.array([0.0, 1.0])
 

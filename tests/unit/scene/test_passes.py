@@ -6,13 +6,13 @@ import pytest
 
 from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS
 from rppm_addon.integrator.common.stage_sizes import StageSizes
+from rppm_addon.integrator.film.film import Film
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.integrator.stages.film import Film
 from rppm_addon.pictures import read_exr, write_exr
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.errors import SettingsError
 from rppm_addon.scene.passes import FILM_PASSES, PASSES, Accumulation, light_group_passes, passes_named
-from rppm_addon.session.merged_passes import MergedPasses
+from rppm_addon.session.render.merged_passes import MergedPasses
 
 
 def random_values(entry, shape, random):

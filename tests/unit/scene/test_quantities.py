@@ -3,7 +3,7 @@
 
 import pytest
 
-from rppm_addon.scene.quantities import bytes_text, clock_text, count_text, rate_text, seconds_text
+from rppm_addon.scene.common.quantities import bytes_text, clock_text, count_text, rate_text, seconds_text
 
 
 @pytest.mark.parametrize(

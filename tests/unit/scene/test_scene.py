@@ -9,7 +9,7 @@ from support.full_scene import assert_same, full_scene
 
 from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.integrator.common.records.photons import PHOTON_SEGMENT_SHIFT
-from rppm_addon.materials.compiler import compile_graph
+from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.scene import (
     Aperture,
     Camera,
@@ -20,11 +20,11 @@ from rppm_addon.scene import (
     Scene,
     load_scene,
     save_scene,
-    storage,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
 from rppm_addon.scene.setting_info import settings_of
 from rppm_addon.scene.settings import MOST_PHOTONS, MOST_SEGMENTS
+from rppm_addon.scene.storage import storage
 from tools import settings_table
 
 

@@ -9,7 +9,7 @@ import pytest
 from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Mesh, Scene
-from rppm_addon.scene.sharing import share
+from rppm_addon.scene.storage.sharing import share
 
 
 @pytest.fixture

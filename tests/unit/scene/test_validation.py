@@ -19,8 +19,8 @@ from rppm_addon.scene import (
 )
 from rppm_addon.scene.errors import SceneError
 from rppm_addon.scene.meshes import SMOOTH_NORMALS, Dicing, RayVisibility
-from rppm_addon.scene.validation import check_record, check_scene
-from rppm_addon.session.process.sessions import SessionStatus
+from rppm_addon.scene.storage.validation import check_record, check_scene
+from rppm_addon.session.transport.sessions import SessionStatus
 
 NAN, INF = float("nan"), float("inf")
 

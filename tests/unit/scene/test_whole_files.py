@@ -16,8 +16,9 @@ from support.floor import floor_scene
 
 from rppm_addon.cli import main
 from rppm_addon.pictures import PictureError, make_folder, read_exr, write_exr
-from rppm_addon.scene import Image, load_scene, save_scene, whole_files
-from rppm_addon.scene.whole_files import renamed_when_whole
+from rppm_addon.scene import Image, load_scene, save_scene
+from rppm_addon.scene.common import whole_files
+from rppm_addon.scene.common.whole_files import renamed_when_whole
 
 
 @contextlib.contextmanager
@@ -85,7 +86,7 @@ def test_where_nothing_can_be_written_is_told_before_a_render(tmp_path):
 
 
 def test_export_says_in_a_line_that_the_disk_is_full(tmp_path, monkeypatch, capsys):
-    from rppm_addon.commands import blend_file
+    from rppm_addon.commands.blend_files import blend_file
 
     monkeypatch.setattr(blend_file, "export_blend_file", lambda *given, **named: large_scene())
     with full_disk():
@@ -97,8 +98,8 @@ def test_export_says_in_a_line_that_the_disk_is_full(tmp_path, monkeypatch, caps
 
 KILLED = """
 import os, signal, sys
-from rppm_addon.scene import whole_files
-from rppm_addon.scene.whole_files import renamed_when_whole
+from rppm_addon.scene.common import whole_files
+from rppm_addon.scene.common.whole_files import renamed_when_whole
 with renamed_when_whole(sys.argv[1]) as temporary:
     open(temporary, "w").write("half")
     os.kill(os.getpid(), signal.SIGKILL)

@@ -6,8 +6,8 @@ import numpy as np
 from rppm_addon.integrator.common.photon_counts import NoiseVariances, PhotonCounts
 from rppm_addon.integrator.state import RenderState
 from rppm_addon.pictures import Placement
-from rppm_addon.session.checkpoint_file import StillRender, write_checkpoint
-from rppm_addon.session.continuation import Pause
+from rppm_addon.session.checkpoints.checkpoint_file import StillRender, write_checkpoint
+from rppm_addon.session.checkpoints.continuation import Pause
 
 HEIGHT, WIDTH, CELLS = 6, 9, 500
 

@@ -6,8 +6,8 @@ import pytest
 
 from rppm_addon.scene.errors import SettingsError
 from rppm_addon.scene.passes import passes_named
-from rppm_addon.session.bake_passes import BAKE_TYPES, BakeFilter, BakePass
-from rppm_addon.session.results import Frame
+from rppm_addon.session.render.bake_passes import BAKE_TYPES, BakeFilter, BakePass
+from rppm_addon.session.render.results import Frame
 
 ALL = -1
 """Pass filter that Blender's operator hands over when nothing was chosen."""

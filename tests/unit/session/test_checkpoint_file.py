@@ -16,9 +16,9 @@ from support.render_states import assert_same_arrays, assert_same_state
 
 from rppm_addon.pictures import PictureError, read_exr
 from rppm_addon.scene.errors import CheckpointError
-from rppm_addon.session import checkpoint_file
-from rppm_addon.session.checkpoint_file import read_checkpoint, read_summary, write_checkpoint
-from rppm_addon.session.checkpoint_writer import still_render
+from rppm_addon.session.checkpoints import checkpoint_file
+from rppm_addon.session.checkpoints.checkpoint_file import read_checkpoint, read_summary, write_checkpoint
+from rppm_addon.session.checkpoints.checkpoint_writer import still_render
 
 
 @pytest.mark.parametrize("learned", [False, True])

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from rppm_addon.scene import Camera, Scene
-from rppm_addon.session.process.resolution_scaler import COARSEST, ResolutionScaler, at_level, scaled
+from rppm_addon.session.placeholders.resolution_scaler import COARSEST, ResolutionScaler, at_level, scaled
 
 PIXELS = 480 * 270
 

@@ -8,7 +8,7 @@ from benchmarks.drivers.lab import DRIVERS, Driver
 from benchmarks.drivers.limits import Limits
 from benchmarks.drivers.programs import Program, all_programs
 from benchmarks.drivers.statistics import Statistics, worst
-from rppm_addon.gl.sources import SHADER_FOLDER, Source
+from rppm_addon.gl.programs.sources import SHADER_FOLDER, Source
 
 LINES = {
     statistics.radeonsi: "Shader Stats: SGPRS: 80 VGPRS: 128 Code Size: 24404 LDS: 0 Scratch: 12288 Max Waves: 5 "

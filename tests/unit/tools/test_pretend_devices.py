@@ -9,12 +9,12 @@ import sys
 import pytest
 
 from benchmarks.drivers.lab import lab_folder
-from rppm_addon.gl import project_mesa
+from rppm_addon.gl.context import project_mesa
 
 SHIM = next(lab_folder().glob("project/usr/lib/*/libamdgpu_noop_drm_shim.so"), None)
 _LIST = """
 import dataclasses, json, sys
-from rppm_addon.gl.context import Context, open_others
+from rppm_addon.gl.context.context import Context, open_others
 context = Context.create()
 information, available = context.information, context.available_memory
 devices = open_others(information.devices, information.number)

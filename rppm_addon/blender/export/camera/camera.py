@@ -6,8 +6,8 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import unscaled
-from ..report import Report
+from ..common.matrices import unscaled
+from ..common.report import Report
 from .eyes import Eye
 from .lens import export_aperture, export_panorama
 from .stand_in import StandInCamera, camera_data

@@ -6,7 +6,7 @@ import numpy as np
 
 from ....scene import Camera
 from ....scene.errors import SceneError
-from ..matrices import unscaled
+from ..common.matrices import unscaled
 from .camera import frame_shape, frame_size, window
 from .lens import export_aperture, export_panorama
 

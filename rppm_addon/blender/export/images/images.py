@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 
 from ....scene import Image
-from ....scene.whole_files import is_no_file
-from ..slices import Slices
+from ....scene.common.whole_files import is_no_file
+from ..common.slices import Slices
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
 from .kept_images import keep, kept
 from .texture_limit import limited

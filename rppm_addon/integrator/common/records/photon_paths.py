@@ -3,9 +3,9 @@
 
 import enum
 
-from ....gl.constants import Constants
-from ....gl.records import Record
-from ....gl.storage_blocks import StorageBlock
+from ....gl.buffers.constants import Constants
+from ....gl.buffers.records import Record
+from ....gl.buffers.storage_blocks import StorageBlock
 
 PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint", depth="uint", escaped="float", deposited="float")
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photons that a path leaves where it meets surfaces."""
 
-from ....gl.constants import Constants
-from ....gl.records import Record
-from ....gl.storage_blocks import StorageBlock
+from ....gl.buffers.constants import Constants
+from ....gl.buffers.records import Record
+from ....gl.buffers.storage_blocks import StorageBlock
 
 PHOTON = Record(
     "Photon",

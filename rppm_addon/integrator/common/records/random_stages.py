@@ -3,7 +3,7 @@
 
 import enum
 
-from ....gl.constants import Constants
+from ....gl.buffers.constants import Constants
 
 
 @enum.unique

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles of the scene in world space, and their attributes."""
 
-from ....gl.records import Record
-from ....gl.storage_blocks import StorageBlock
+from ....gl.buffers.records import Record
+from ....gl.buffers.storage_blocks import StorageBlock
 
 TRIANGLE_ATTRIBUTES = Record(
     "TriangleAttributes",

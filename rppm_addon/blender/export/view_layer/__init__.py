@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The view layer: settings, passes, visibility, masks, and light linking."""

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's scene properties to render settings."""
+
+import dataclasses
+
+import bpy
+import numpy as np
+
+from ....scene import RenderSettings
+from ....scene.passes import COMBINED
+from ....scene.setting_info import settings_of
+from ...properties import VIEWPORT_APART, viewport_property
+from .passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
+
+
+def export_settings(
+    scene: bpy.types.Scene,
+    layer: bpy.types.ViewLayer | None = None,
+    viewport: bool = False,
+    shown_pass: str = COMBINED,
+) -> RenderSettings:
+    """The settings of scene.rppm, or the defaults where the extension is not registered.
+
+    layer: whose passes are rendered; without one there are none.
+    viewport: those of a viewport, which has iterations and photons of its own, no time limit, and no pass but the one
+    that it shows.
+    """
+    settings = RenderSettings(film_transparent=scene.render.film_transparent, passes=())
+    if viewport:
+        settings.passes = () if shown_pass == COMBINED else (shown_pass,)
+    elif layer is not None:
+        settings.passes = tuple(entry.name for entry in passes_of_layer(layer))
+        settings.aovs = aovs_of_layer(layer)
+        settings.light_groups = light_groups_of_layer(layer)
+    stored = getattr(scene, "rppm", None)
+    if stored is not None:
+        names = [info.property_of(name) for name, info in settings_of(RenderSettings).items() if not info.where]
+        settings = settings.with_properties({name: getattr(stored, name) for name in names})
+        if stored.use_animated_seed:
+            settings.seed = seed_of_frame(stored.seed, scene.frame_current)
+        if viewport:
+            settings.iterations, settings.photons = stored.preview_samples, stored.preview_photons
+            apart = {name: getattr(stored, viewport_property(name)) for name in VIEWPORT_APART}
+            settings = settings.with_values(**apart)
+    if not viewport and layer is not None and layer.samples > 0:
+        settings.iterations = layer.samples
+    if viewport:
+        settings.time_limit = 0.0
+        settings.use_denoising &= shown_pass == COMBINED
+    return settings
+
+
+def seed_of_frame(seed: int, frame: int) -> int:
+    """A seed of each frame's own, 0 to 2^31 - 1: seeds and frames that are neighbors have nothing in common.
+
+    The last rounds of MurmurHash3 (Appleby), a permutation of 32 bits, of the frame, then of what that gives and the
+    seed.
+    """
+
+    def mixed(bits: int) -> int:
+        bits = ((bits ^ (bits >> 16)) * 0x85EBCA6B) & 0xFFFFFFFF
+        bits = ((bits ^ (bits >> 13)) * 0xC2B2AE35) & 0xFFFFFFFF
+        return bits ^ (bits >> 16)
+
+    return mixed((mixed(frame & 0xFFFFFFFF) + seed) & 0xFFFFFFFF) & 0x7FFFFFFF
+
+
+PREVIEW_ITERATIONS, PREVIEW_PHOTONS, PREVIEW_SECONDS = 64, 8192, 1.0
+"""Thumbnails are small and many: what a second gives is good enough."""
+
+
+def preview_settings(settings: RenderSettings) -> RenderSettings:
+    """Return settings for Blender's previews of materials, worlds and lights, whose scenes have nobody's settings."""
+    return dataclasses.replace(
+        settings, iterations=PREVIEW_ITERATIONS, photons=PREVIEW_PHOTONS, time_limit=PREVIEW_SECONDS
+    )
+
+
+def export_cubemap_center(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
+    """(3,) meters where the chosen object is in this frame; None where none is chosen."""
+    stored = getattr(depsgraph.scene, "rppm", None)
+    chosen = None if stored is None else stored.cubemap_center_object
+    return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)
+
+
+def export_dicing_rate(scene: bpy.types.Scene, viewport: bool) -> float:
+    """Pixels by which Adaptive Subdivision measures edges; Cycles' defaults where it is not enabled."""
+    name, default = ("preview_dicing_rate", 8.0) if viewport else ("dicing_rate", 1.0)
+    return getattr(getattr(scene, "cycles", None), name, default)
+
+
+def export_exposure(scene: bpy.types.Scene) -> float:
+    """The film's, a factor; 1 where the extension is not registered."""
+    return scene.rppm.film_exposure if hasattr(scene, "rppm") else 1.0

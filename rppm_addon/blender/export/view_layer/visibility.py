@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's ray visibility."""
+
+import bpy
+
+from ....scene import RayVisibility
+
+_CAMERA, _DIFFUSE, _GLOSSY, _TRANSMISSION, _SHADOW = map(int, RayVisibility)
+_OF_BITS = [RayVisibility(bits) for bits in range(int(RayVisibility.ALL) + 1)]
+
+
+def visibility_of(source: bpy.types.Object) -> RayVisibility:
+    """The rays that see an object."""
+    # Written out: it is asked of thousands of objects.
+    return _OF_BITS[
+        _CAMERA * source.visible_camera
+        + _DIFFUSE * source.visible_diffuse
+        + _GLOSSY * source.visible_glossy
+        + _TRANSMISSION * source.visible_transmission
+        + _SHADOW * source.visible_shadow
+    ]

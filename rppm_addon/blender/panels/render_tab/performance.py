@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of the render tab on memory, how renders get on, and diagnostics."""
+
+import bpy
+
+from ....scene.common.quantities import bytes_text, count_text, noise_text, rate_text, seconds_text
+from ....scene.settings import AccelerationStructure
+from ...export.view_layer.settings import export_settings
+from ...readings import memory_reading
+from ...render_client.renderer_process import failure
+from ...reports import RenderReport, reports_of
+from ..base import RppmPanel, length_text, letters_across, paragraph, reading, rendered_size, restart_button
+from ..switches import draw_setting
+
+
+class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        scene = context.scene
+        column = self.column()
+        reports = reports_of(scene.session_uid)
+        last = reports.finals[0] if reports.finals else None
+        settings = export_settings(scene, context.view_layer)
+        memory = memory_reading(settings, *rendered_size(scene.render), last)
+        photons = memory.by_settings.ppm.get("photons", 0)
+        reading(column, "Photons", bytes_text(photons))
+        reading(column, "Picture", bytes_text(memory.by_settings.total_bytes - photons))
+        if memory.scene_bytes is None:
+            reading(column, "Scene", "once rendered")
+        else:
+            reading(column, "Scene", bytes_text(memory.scene_bytes))
+        reading(column, "Expected", bytes_text(memory.total_bytes))
+
+
+class RPPM_PT_performance_final(RppmPanel, bpy.types.Panel):
+    bl_label = "Final Render"
+    bl_parent_id = "RPPM_PT_performance"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
+        column.prop(context.scene.rppm, "checkpoint_path")
+
+
+class RPPM_PT_performance_viewport(RppmPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "RPPM_PT_performance"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.scene.render, "preview_pixel_size", text="Pixel Size")
+
+
+class RPPM_PT_diagnostics(RppmPanel, bpy.types.Panel):
+    bl_label = "Diagnostics"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """All is in the panels inside."""
+
+
+class RPPM_PT_acceleration_structure(RppmPanel, bpy.types.Panel):
+    bl_label = "Acceleration Structure"
+    bl_parent_id = "RPPM_PT_diagnostics"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.scene.rppm, "acceleration_structure", text="Structure")
+        column = column.column()
+        column.active = context.scene.rppm.acceleration_structure != AccelerationStructure.BVH.name
+        draw_setting(column, context.scene, "cubemap_resolution", "Resolution")
+        column.prop(context.scene.rppm, "cubemap_center_object", text="Center")
+
+
+class RPPM_PT_status(RppmPanel, bpy.types.Panel):
+    bl_label = "Status"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        reports = reports_of(context.scene.session_uid)
+        return reports.latest is not None or bool(failure() or reports.error or reports.viewport_error)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        reports, letters = reports_of(context.scene.session_uid), letters_across(context)
+        if failure():
+            paragraph(self.layout, f"The renderer has stopped: {failure()}", letters, icon="ERROR")
+            restart_button(self.layout)
+        for title, error in (("Viewport", reports.viewport_error), ("Last render", reports.error)):
+            if error and error != failure():
+                paragraph(self.layout, f"{title}: {error}", letters, icon="ERROR")
+        for report in (reports.viewport, reports.finals[0] if reports.finals else None):
+            if report is not None:
+                self.layout.label(text=report.kind.value)
+                _show(self.column(), report, context.scene)
+
+
+def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
+    reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
+    if report.noise > 0.0:
+        reading(column, "Noise", noise_text(report.noise, report.settings.adaptive_threshold))
+    reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
+    reading(column, "Radius", length_text(scene, report.radius_meters))
+    reading(column, "Memory", bytes_text(report.memory_bytes))
+    reading(column, "Speed", f"{rate_text(report.iterations_per_second)} samples/s")
+    reading(column, "", f"{rate_text(report.photons_per_second)} photons/s")
+    reading(column, "Time", seconds_text(report.seconds))
+    reading(column, "Building", seconds_text(report.build_seconds))
+    for title, name, taken in (
+        ("Density", "density_estimation", report.density_estimation),
+        ("First Hits", "first_photon_hits", report.first_photon_hits),
+    ):
+        if taken:
+            reading(column, title, scene.rppm.bl_rna.properties[name].enum_items[taken].name)
+    if report.device:
+        reading(column, "Device", report.device)
+
+
+class RPPM_PT_last_renders(RppmPanel, bpy.types.Panel):
+    bl_label = "Last Renders"
+    bl_parent_id = "RPPM_PT_diagnostics"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and bool(reports_of(context.scene.session_uid).finals)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        finals = reports_of(context.scene.session_uid).finals
+        table = self.layout.column(align=True)
+        for name, text in _COMPARED:
+            row = table.row(align=True)
+            row.label(text=name)
+            for report in finals:
+                row.label(text=text(report))
+
+
+_COMPARED = (
+    ("Resolution", lambda report: f"{report.width} x {report.height}"),
+    ("Samples", lambda report: str(report.iterations)),
+    ("Photons", lambda report: count_text(report.photons)),
+    ("Time", lambda report: seconds_text(report.seconds)),
+    ("Building", lambda report: seconds_text(report.build_seconds)),
+    ("Photons/s", lambda report: rate_text(report.photons_per_second)),
+    ("Samples/s", lambda report: rate_text(report.iterations_per_second)),
+    ("Memory", lambda report: bytes_text(report.memory_bytes)),
+    ("Triangles", lambda report: count_text(report.triangles)),
+    ("Warnings", lambda report: str(report.warning_count)),
+)
+"""Lines of the table and what they say of a render, the newest on the left."""
+
+
+STATUS = (RPPM_PT_status,)
+CLASSES = (
+    RPPM_PT_performance,
+    RPPM_PT_performance_final,
+    RPPM_PT_performance_viewport,
+    RPPM_PT_diagnostics,
+    RPPM_PT_acceleration_structure,
+    RPPM_PT_last_renders,
+)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of the render tab that show settings, but for those of sampling."""
+
+import bpy
+
+from ...export.camera.camera import frame_size
+from ...export.view_layer.settings import export_settings
+from ...readings import radius_reading
+from ...reports import reports_of
+from ..base import RppmPanel, length_text, reading
+from ..switches import draw_setting
+
+
+class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
+    bl_label = "Max Bounces"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "max_bounces", text="Total")
+        column.prop(settings, "transparent_max_bounces", text="Transparent")
+        column.prop(settings, "specular_roughness", text="Specular")
+
+
+class RPPM_PT_path_parts(RppmPanel, bpy.types.Panel):
+    bl_label = "Camera and Photons"
+    bl_parent_id = "RPPM_PT_paths"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "max_camera_bounces", text="Camera")
+        column.prop(settings, "max_photon_bounces", text="Photon")
+
+
+class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
+    bl_label = "Radius"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        scene = context.scene
+        column = self.column()
+        column.prop(scene.rppm, "radius_scale", text="Initial")
+        column.prop(scene.rppm, "use_adaptive_radius", text="Adaptive")
+        draw_setting(column, scene, "radius_minimum", "Minimum")
+        draw_setting(column, scene, "radius_maximum", "Maximum")
+        column.prop(scene.rppm, "alpha")
+        column.separator()
+        final = radius_reading(export_settings(scene), *frame_size(scene.render))
+        reading(column, "First", f"{final.first:.2f} pixels")
+        reading(column, "Last", f"{final.last:.2f} pixels ({final.shrinkage:.0%})")
+        viewport = radius_reading(export_settings(scene, viewport=True), *frame_size(scene.render))
+        reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.preview_samples}")
+        report = reports_of(scene.session_uid).latest
+        if report is not None:
+            reading(column, "Rendered", f"{length_text(scene, report.radius_meters)} in sample {report.iterations}")
+
+
+class RPPM_PT_animation(RppmPanel, bpy.types.Panel):
+    bl_label = "Animation"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.scene.rppm, "samples_per_frame", text="Samples")
+
+
+class RPPM_PT_film(RppmPanel, bpy.types.Panel):
+    bl_label = "Film"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        scene = context.scene
+        column = self.column()
+        column.prop(scene.rppm, "film_exposure")
+        column.prop(scene.rppm, "pixel_filter_type", text="Filter")
+        if scene.rppm.pixel_filter_type != "BOX":
+            column.prop(scene.rppm, "filter_width", text="Width")
+        column.prop(scene.render, "film_transparent", text="Transparent")
+
+
+CLASSES = (
+    RPPM_PT_paths,
+    RPPM_PT_path_parts,
+    RPPM_PT_radius,
+    RPPM_PT_animation,
+    RPPM_PT_film,
+)

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels of the render tab on how much is rendered, and their presets."""
+
+import bpy
+
+from ....denoising.places import REMEDY
+from ....scene.common.quantities import count_text
+from ...export.view_layer.settings import export_settings
+from ...render_client.denoising_libraries import denoising_libraries
+from ..base import RppmPanel, letters_across, paragraph, rendered_size
+from ..switches import draw_setting
+from .cycles_settings import RPPM_OT_copy_from_cycles, RPPM_OT_copy_to_cycles
+from .presets import RPPM_PT_presets
+
+
+class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
+    bl_label = "Sampling"
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        RPPM_PT_presets.draw_panel_header(self.layout)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "direct_light", text="Direct")
+        column.prop(settings, "use_final_gather")
+        if RPPM_OT_copy_from_cycles.poll(context):
+            row = column.row(align=True)
+            row.operator(RPPM_OT_copy_from_cycles.bl_idname, text="From Cycles")
+            row.operator(RPPM_OT_copy_to_cycles.bl_idname, text="To Cycles")
+
+
+def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: bool) -> None:
+    """Noise threshold and samples of final renders or of viewports, laid out as Cycles' panels are."""
+    prefix, settings = "preview_" if viewport else "", scene.rppm
+    is_on = getattr(settings, f"use_{prefix}adaptive_sampling")
+    row = column.row(align=True, heading="Noise Threshold")
+    row.prop(settings, f"use_{prefix}adaptive_sampling", text="")
+    threshold = row.row()
+    threshold.active = is_on
+    threshold.prop(settings, f"{prefix}adaptive_threshold", text="")
+    column.prop(settings, f"{prefix}samples", text="Max Samples" if is_on else "Samples")
+    least = column.column()
+    least.active = is_on
+    automatic = f"Automatic: {export_settings(scene, viewport=viewport).least_iterations}"
+    draw_setting(least, scene, f"{prefix}adaptive_min_samples", "Min Samples", automatic)
+
+
+class RPPM_PT_sampling_viewport(RppmPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_parent_id = "RPPM_PT_sampling"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        _draw_samples(column, context.scene, viewport=True)
+        draw_setting(column, context.scene, "preview_photons", "Photons")
+        column.prop(settings, "preview_pause", text="Pause")
+
+
+class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
+    bl_label = "Render"
+    bl_parent_id = "RPPM_PT_sampling"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        _draw_samples(column, context.scene, viewport=False)
+        photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
+        draw_setting(column, context.scene, "photons", "Photons", f"Automatic: {count_text(photons)}")
+        draw_setting(column, context.scene, "time_limit", "Time Limit")
+
+
+class _DenoisePanel(RppmPanel):
+    """Denoising of viewports or of final renders, laid out as Cycles' panels are."""
+
+    bl_label = "Denoise"
+    bl_options = {"DEFAULT_CLOSED"}
+    prefix = ""
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        self.layout.prop(context.scene.rppm, f"use_{self.prefix}denoising", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        if not denoising_libraries():
+            paragraph(self.layout, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="ERROR")
+        column = self.column()
+        column.active = getattr(settings, f"use_{self.prefix}denoising")
+        column.prop(settings, f"{self.prefix}denoising_input_passes", text="Passes")
+        column.prop(settings, f"{self.prefix}denoising_prefilter", text="Prefilter")
+        column.prop(settings, f"{self.prefix}denoising_quality", text="Quality")
+        if self.prefix:
+            column.prop(settings, f"{self.prefix}denoising_start_sample", text="Start Sample")
+
+
+class RPPM_PT_sampling_viewport_denoise(_DenoisePanel, bpy.types.Panel):
+    bl_parent_id = "RPPM_PT_sampling_viewport"
+    prefix = "preview_"
+
+
+class RPPM_PT_sampling_final_denoise(_DenoisePanel, bpy.types.Panel):
+    bl_parent_id = "RPPM_PT_sampling_final"
+
+
+class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
+    bl_label = "Advanced"
+    bl_parent_id = "RPPM_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        row = column.row(align=True)
+        row.prop(settings, "seed")
+        row.prop(settings, "use_animated_seed", text="", icon="TIME")
+        column.prop(settings, "density_estimation", text="Density")
+        column.prop(settings, "first_camera_hits")
+        column.prop(settings, "first_photon_hits")
+        column.prop(settings, "use_splat_roulette")
+
+
+CLASSES = (
+    RPPM_PT_sampling,
+    RPPM_PT_sampling_viewport,
+    RPPM_PT_sampling_viewport_denoise,
+    RPPM_PT_sampling_final,
+    RPPM_PT_sampling_final_denoise,
+    RPPM_PT_advanced,
+)

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""DirectCameraHits of panoramas, of cameras with an aperture, and of others where tracing is faster."""
+
+import numpy as np
+
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ..common.band import Band
+from ..common.stage_sizes import StageSizes
+from ..density_estimation.stored_photons import CameraRaster
+from ..device_scene.stage_context import StageContext
+from .camera_hits import CameraHits
+from .importons import Importons
+
+Record("PrimaryRaysParameters", first_pixel="uint")
+
+
+class PrimaryRays(CameraHits):
+    """Stands in for the GBuffer where rays do not come from one point, or meet no plane, and where tracing them is
+    faster than rasterizing all triangles."""
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._rays = library.compute("primary_rays/rays.comp")
+        self._is_on_raster = sizes.first_camera_hits is not None
+
+    def raster(self, band: Band) -> CameraRaster | None:
+        """CameraHits.raster."""
+        return CameraRaster(self.camera.buffer, band.columns, band.rows) if self._is_on_raster else None
+
+    def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
+        """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
+        with context.timers.stage("gbuffer"):
+            importons.active.fill(band.pixel_count)
+            self.camera.write(view)
+            self._rays.run(
+                band.pixel_count,
+                {**context.blocks, **importons.blocks, **self.blocks},
+                {"first_pixel": band.first_pixel},
+            )
+            importons.find_hits(context)

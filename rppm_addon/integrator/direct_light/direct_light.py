@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light straight from the sources, by shadow rays from the camera paths' vertices."""
+
+from collections.abc import Mapping
+
+import moderngl
+
+from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...scene.settings import DirectLight as DirectLightMode
+from ..camera_paths.importons import Importons
+from ..common.active_paths import PathList
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.records.closures import CLOSURE
+from ..common.records.rays import HIT, RAY
+from ..common.stage import Stage
+from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
+from ..device_scene.stage_context import StageContext
+
+LIGHT_SPLIT = Record("LightSplit", glossy="vec3", light="uint", transmission="vec3", unused="float")
+"""Fractions of the light of a shadow ray that glossy and transmission lobes scatter, by channel; the rest is diffuse.
+``light`` is the number of the light that the ray goes to, if that is no triangle."""
+StorageBlock("LightSplits", "LightSplit light_splits[];")
+
+
+Record(
+    "DirectLightParameters",
+    segment="uint",
+    first_pixel="uint",
+    light_sample="uint",
+    sample_weight="float",
+    splits_light="uint",
+)
+
+Record("PassSurfaceParameters", passed="uint")
+
+_SURFACES_AT_ONCE = 16
+"""A GPU is asked whether any shadow ray passes surfaces still this seldom, as it has to be waited for."""
+
+
+def _pass_pixels(sizes: StageSizes) -> int:
+    return max(split_pixels(sizes), grouped_pixels(sizes))
+
+
+class DirectLight(Stage):
+    """A sampled light and a shadow ray, or several, for every camera path and segment."""
+
+    memory_group = "direct light"
+    remedy = "lower the resolution"
+    _rays = StorageBuffer("shadow rays", RAY, band_pixels, block="ShadowRays")
+    contributions = StorageBuffer("direct light", "vec4", band_pixels, block="Contributions")
+    splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _pass_pixels, block="LightSplits")
+    visibility = StorageBuffer("visibility", "uint", band_pixels, block="Visibility")
+    triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels, block="LightTriangles")
+    active_rays = PathList("active shadow rays", band_pixels)
+    # Of scenes with transparent surfaces.
+    _hits = StorageBuffer("hits of shadow rays", HIT)
+    _closures = StorageBuffer("closures that shadow rays pass", CLOSURE)
+    _passing = PathList("shadow rays that pass surfaces", to_keep=True)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._sample = library.compute("direct_light/sample.comp")
+        self._soften = library.compute("direct_light/terminator.comp")
+        self._meet = library.compute("direct_light/meet.comp")
+        self._pass = library.compute("direct_light/pass.comp")
+        self._add = library.compute("direct_light/add.comp")
+        self._splits_light = _pass_pixels(sizes) > 0
+
+    def add(
+        self,
+        context: StageContext,
+        importons: Importons,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """Add the direct light of the resolved vertices of the active camera paths to the band's radiance, or to what
+        their gathering rays found.
+
+        To be called before the paths scatter on. Nothing is added where photons bring direct light, or where none of
+        it would come to the film.
+        """
+        if context.settings.direct_light is not DirectLightMode.RAYS or not iteration.needs_radiance:
+            return
+        with context.timers.stage("direct light"):
+            for ray in range(iteration.shadow_rays):
+                self._sample_lights(context, importons, band, iteration, segment, ray)
+                active = self.active_rays
+                active.take(importons.active, self._rays.buffer)
+                if active.known_empty:
+                    continue
+                if context.resolve.has_terminators:
+                    self._soften_terminator(context, importons)
+                context.lights.emitters.tint_contributions(
+                    context.resolve,
+                    self._rays.buffer,
+                    self.triangles.buffer,
+                    self.contributions.buffer,
+                    active,
+                    iteration.number,
+                )
+                linking = context.lights.linking_blocks(self.contributions.buffer)
+                if context.materials.any_passes_shadow_rays:
+                    self._pass_surfaces(context, importons, linking, iteration, segment)
+                else:
+                    context.acceleration.occluded(
+                        self._rays.buffer, self.triangles.buffer, self.visibility.buffer, active, linking
+                    )
+                active.run(self._add, {**context.blocks, **self.blocks})
+
+    def _pass_surfaces(
+        self,
+        context: StageContext,
+        importons: Importons,
+        linking: Mapping[str, moderngl.Buffer] | None,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
+        """Trace shadow rays through transparent surfaces, which take of what they bring."""
+        rays, hits, closures, passing = self._rays, self._hits, self._closures, self._passing
+        for buffer in (hits, closures):
+            buffer.require_items(self.active_rays.most)
+        passing.require(self.active_rays.most, to_keep=True)
+        passing.take(self.active_rays, rays.buffer)
+        most = context.settings.transparent_max_bounces
+        for surfaces in range(most + 1):
+            if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
+                return
+            context.acceleration.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
+            blocks = {
+                **context.blocks,
+                **importons.blocks,
+                **self.blocks,
+                "Hits": hits.buffer,
+                "Closures": closures.buffer,
+            }
+            passing.run(self._meet, blocks)
+            passing.keep(rays.buffer)
+            if passing.known_empty:
+                return
+            context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
+            passing.run(self._pass, blocks, {"passed": surfaces})
+            passing.keep(rays.buffer)
+            if passing.known_empty:
+                return
+
+    def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
+        """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
+        self.active_rays.run(self._soften, {**context.blocks, **importons.lit_blocks, **self.blocks})
+
+    def _sample_lights(
+        self,
+        context: StageContext,
+        importons: Importons,
+        band: Band,
+        iteration: Iteration,
+        segment: int,
+        ray: int,
+    ) -> None:
+        """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
+        importons.active.run(
+            self._sample,
+            {**context.blocks, **importons.lit_blocks, **self.blocks},
+            {
+                "segment": segment,
+                "first_pixel": band.first_pixel,
+                "light_sample": (iteration.number - 1) * iteration.shadow_rays + ray,
+                "sample_weight": 1.0 / iteration.shadow_rays,
+                "splits_light": self._splits_light,
+            },
+        )

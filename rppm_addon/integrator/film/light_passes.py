@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes that tell apart what makes a picture's light: by what first surfaces make of it, and caustics.
+
+Whatever adds to Combined adds a part of the same to these, so that they add up to it. Light that camera paths meet is
+the film's (shaders/film/seen_light.comp).
+"""
+
+import enum
+
+import moderngl
+
+from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ComputeProgram, ProgramLibrary
+from ...scene.settings import DirectLight as DirectLightMode
+from ..camera_paths.final_gather import FinalGather
+from ..common.band import Band
+from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
+from ..density_estimation.splat_sums import LightSum
+from .events import BandEvents, Listener
+from .film import pass_bits
+
+Record(
+    "LightPassParameters",
+    segment="uint",
+    pixels="uint",
+    passes="uint",
+    count="uint",
+    scattered="uint",
+    caustics="uint",
+    light_sums="uint",
+    part="uint",
+    quantum="float",
+)
+StorageBlock("FoundCaustics", "vec4 found_caustics[];")
+
+
+class GatherPart(enum.IntEnum):
+    """Parts of what gathering rays found."""
+
+    ALL = 0
+    DIRECT = 1
+    CAUSTICS = 2
+
+
+Constants("GatherParts", GATHER_PART=GatherPart)
+
+
+def _scattered_pixels(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if sizes.has_scattered_light else 0
+
+
+def _caustic_pixels(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if sizes.has_caustics else 0
+
+
+class LightPasses(Listener):
+    """Adds to the film's passes what shadow rays, gathering rays and photons add to a band's radiance. Where none of
+    these passes is wanted, there are neither programs nor buffers."""
+
+    memory_group = "passes"
+    remedy = "lower the resolution"
+    _found_direct = StorageBuffer("found direct light", "vec4", _scattered_pixels, block="FoundDirect")
+    _found_caustics = StorageBuffer("found caustics", "vec4", _caustic_pixels, block="FoundCaustics")
+    _taken = StorageBuffer("gathered light of passes", "vec4", split_pixels)
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._passes = pass_bits(sizes)
+        self._kept = LightSum.of(sizes) & ~LightSum.GROUPS
+        self._programs: dict[str, ComputeProgram] = {}
+        if self._kept:
+            names = ("direct", "found", "gathered", "photons")
+            self._programs = {name: library.compute(f"light_passes/{name}.comp") for name in names}
+
+    def clear(self) -> None:
+        """Forget what the band before found."""
+        if LightSum.CAUSTICS in self._kept:
+            self._found_caustics.clear()
+
+    def direct_light_found(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_found: add what DirectLight.add has added."""
+        context, direct_light, band = events.context, events.direct_light, events.band
+        by_rays = context.settings.direct_light is DirectLightMode.RAYS
+        if not (self._kept and events.iteration.enters_film and by_rays):
+            return
+        with context.timers.stage("light passes"):
+            direct_light.active_rays.run(
+                self._programs["direct"],
+                {**context.blocks, **events.importons.blocks, **direct_light.blocks, **self.blocks},
+                self._parameters(band, segment),
+            )
+
+    def band_ended(self, events: BandEvents) -> None:
+        """Listener.band_ended: add what FinalGather.share has added, and what photons have."""
+        if not self._kept:
+            return
+        context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
+        with context.timers.stage("light passes"):
+            parameters = self._parameters(band) | {"quantum": sums.quantum}
+            blocks = {**context.blocks, **events.importons.blocks, **self.blocks}
+            self._programs["photons"].run(band.pixel_count, blocks, parameters)
+            if not context.gathers:
+                return
+            self._programs["found"].run(band.pixel_count, blocks, parameters)
+            for part, found in self._parts(final_gather).items():
+                self._taken.clear()
+                final_gather.share_found(context, found, self._taken.buffer, band, events.radii)
+                self._programs["gathered"].run(
+                    band.pixel_count, {**blocks, "Radiances": self._taken.buffer}, parameters | {"part": int(part)}
+                )
+
+    def _parts(self, final_gather: FinalGather) -> dict[GatherPart, moderngl.Buffer]:
+        """Return the buffers of light found by gathering rays that is to be shared, by part."""
+        parts: dict[GatherPart, moderngl.Buffer] = {}
+        if LightSum.SCATTERED in self._kept:
+            parts |= {GatherPart.ALL: final_gather.radiances.buffer, GatherPart.DIRECT: self._found_direct.buffer}
+        if LightSum.CAUSTICS in self._kept:
+            parts[GatherPart.CAUSTICS] = self._found_caustics.buffer
+        return parts
+
+    def _parameters(self, band: Band, segment: int = 0) -> dict[str, float]:
+        return {
+            "pixels": band.pixel_count,
+            "passes": self._passes,
+            "segment": segment,
+            "count": band.pixel_count,
+            "scattered": LightSum.SCATTERED in self._kept,
+            "caustics": LightSum.CAUSTICS in self._kept,
+            "light_sums": int(self._kept),
+            "part": int(GatherPart.ALL),
+            "quantum": 0.0,
+        }

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The media that paths begin in: around the camera and the lights."""
+
+import numpy as np
+
+from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...scene.scene import Scene
+from ..camera_paths.importons import Importons
+from ..common.active_paths import ActivePaths
+from ..common.iteration import Iteration
+from ..common.stage import Stage
+from ..common.stage_sizes import StageSizes
+from ..device_scene.stage_context import StageContext
+from ..photons.photons import Photons
+from ..surfaces.geometry import finite_bounds, placed_boxes
+
+MEDIUM_BOX = Record("MediumBox", low="vec3", unused0="uint", high="vec3", unused1="uint")
+"""Lowest and highest coordinates of surfaces with a medium inside, meters."""
+StorageBlock("MediumBoxes", "MediumBox medium_boxes[];")
+StorageBlock("MediaOfSources", "uint media_of_sources[];")
+"""The media at the middle of each light, and at the camera, as paths carry them."""
+Record("FindMediaParameters", camera_position="vec3", box_count="uint")
+Record("EnterMediaParameters", camera_position="vec3", box_count="uint", has_camera="uint")
+
+_MOST_BOXES = 32
+"""Boxes that points are looked for in; what is more lies in the last together."""
+
+
+class Media(Stage):
+    """Paths begin in the media that surround the camera or their light (shaders/media/crossings.glsl).
+
+    Where no material has a volume there are neither programs nor buffers, and nothing is done.
+    """
+
+    memory_group = "media"
+    remedy = "use fewer objects with volumes"
+    _of_sources = StorageBuffer("media of lights and the camera", "uint", block="MediaOfSources")
+    _boxes = StorageBuffer("boxes of media", MEDIUM_BOX, block="MediumBoxes")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._library = library
+        self._has_media, self._has_texels = sizes.has_media, sizes.has_texels
+        self._scene: Scene | None = None
+        self._box_count = 0
+
+    def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
+        """Have photons that have just left the lights begin in the media there."""
+        if self._is_used(context, iteration):
+            self._enter(context, photons.active, photons.blocks, "media/enter_photons.comp")
+
+    def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
+        """Have camera paths that have just begun do so in the media around the camera."""
+        if self._is_used(context, iteration):
+            self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")
+
+    def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
+        """Find where media are, and what is in them, for a new scene; true where there are any."""
+        if not self._has_media:
+            return False
+        if self._scene is not context.scene or iteration.number == 1:
+            self._scene = context.scene
+            boxes = _boxes(context.scene, context.materials.materials_with_media)
+            self._box_count = len(boxes)
+            if self._box_count:
+                self._find(context, boxes)
+        return self._box_count > 0
+
+    def _find(self, context: StageContext, boxes: np.ndarray) -> None:
+        records = MEDIUM_BOX.zeros(len(boxes))
+        records["low"], records["high"] = boxes[:, 0], boxes[:, 1]
+        self._boxes.upload(records)
+        lights = len(context.lights.table)
+        self._of_sources.require_items(lights + 1)
+        program = self._library.compute("media/find.comp", context.acceleration.traversal_defines)
+        program.run(lights + 1, {**context.blocks, **self.blocks}, self._parameters(context))
+
+    def _enter(self, context: StageContext, active: ActivePaths, blocks: dict[str, Bindable], kernel: str) -> None:
+        program = self._library.compute(kernel, context.acceleration.traversal_defines)
+        parameters = {**self._parameters(context), "has_camera": not self._has_texels}
+        active.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
+
+    def _parameters(self, context: StageContext) -> dict[str, object]:
+        position = tuple(map(float, context.scene.camera.matrix[:3, 3]))
+        return {"camera_position": position, "box_count": self._box_count}
+
+
+def _boxes(scene: Scene, materials: frozenset[int]) -> np.ndarray:
+    """(n, 2, 3) float32 boxes, low and high, around the instances with any of the materials, meters."""
+    found: dict[int, tuple[np.ndarray, np.ndarray] | None] = {}
+    low, high = [], []
+    for instance in scene.instances:
+        if materials.isdisjoint(instance.materials):
+            continue
+        if instance.mesh not in found:
+            found[instance.mesh] = finite_bounds(scene.meshes[instance.mesh].positions)
+        bounds = found[instance.mesh]
+        if bounds is None:
+            continue
+        lows, highs, good = placed_boxes(instance.matrix[None], np.array([bounds]))
+        low += list(lows[good])
+        high += list(highs[good])
+    boxes = np.stack([low, high], axis=1) if low else np.zeros((0, 2, 3))
+    if len(boxes) > _MOST_BOXES:
+        rest = boxes[_MOST_BOXES - 1 :]
+        united = np.stack([rest[:, 0].min(axis=0), rest[:, 1].max(axis=0)])
+        boxes = np.concatenate([boxes[: _MOST_BOXES - 1], united[None]])
+    return boxes.astype(np.float32)

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The first part of DirectPhotonHits: photons leave the lights."""
+
+from collections.abc import Mapping
+
+from ...gl.buffers.records import Record
+from ...gl.programs.programs import Bindable, ProgramLibrary
+from ..common.active_paths import ActivePaths
+from ..device_scene.stage_context import StageContext
+
+Record("EmitParameters", count="uint", target_count="uint")
+Record("FalloffParameters", count="uint")
+
+
+class PhotonEmission:
+    """Programs that place and direct photons, and end those that a soft light does not send to where they hit."""
+
+    def __init__(self, library: ProgramLibrary) -> None:
+        self._emit = library.compute("photon_emission/emit.comp")
+        self._falloff = library.compute("photon_emission/falloff.comp")
+        self._library = library
+
+    def emit(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:
+        """Emit ``count`` photons: their first rays, the flux they carry, what the world is like there, and how their
+        neighbors leave.
+
+        photons: storage blocks of the photons (Photons.blocks), as for the other programs.
+        """
+        self._emit.run(
+            count,
+            {**context.blocks, **photons},
+            {"count": count, "target_count": context.lights.target_count},
+        )
+
+    def apply_falloff(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:
+        """Where photons hit first: end those that a soft light does not send there, and let the distance count."""
+        self._falloff.run(count, {**context.blocks, **photons}, {"count": count})
+
+    def cut_soft_lights(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
+        """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
+        program = self._library.compute("photon_emission/cut.comp", context.acceleration.traversal_defines)
+        active.run(program, {**context.blocks, **photons})
+
+    def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
+        """Where direct photons hit: mark those that came through a portal, whose light shadow rays bring."""
+        program = self._library.compute("photon_emission/portal_passed.comp", {"PORTALS": 1})
+        active.run(program, {**context.blocks, **photons})

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A first look at a scene, before its programs are compiled: plain surfaces under a light at the viewer's head."""
+
+from collections.abc import Callable
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers.buffers import GrowingBuffer
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...materials.placeholders.plain_surface import PlainSurface, plain_surface
+from ...materials.tables import default_material
+from ...scene.errors import DeviceError
+from ...scene.meshes import Instance, RayVisibility
+from ...scene.scene import Scene
+from ...scene.storage.sharing import same_members
+from ..common.band import MOST_RASTER_PIXELS
+from ..common.camera_view import camera_view
+from ..surfaces.geometry import Geometry
+
+PLAIN_SURFACE = Record(
+    "PlainSurface", color="vec3", metallic="float", emission="vec3", roughness="float", opacity="float"
+)
+StorageBlock("PlainSurfaces", "PlainSurface plain_surfaces[];")
+StorageBlock("InstanceOpacities", "float instance_opacities[];")
+"""Below 0 of what the camera does not see, 0 of a holdout."""
+Record("FirstLookParameters", sky="vec3", headlight="float", exposure="float", drawn="uint")
+_SOLID, _TRANSPARENT = 1, 2
+Constants("FirstLookDrawn", DRAWN_SOLID=_SOLID, DRAWN_TRANSPARENT=_TRANSPARENT)
+
+HEADLIGHT = 0.6
+"""Radiance of a white diffuse surface that faces the viewer, whatever the exposure: nothing is known of the lights."""
+_DARKEST_SKY, _BRIGHTEST_SKY = 0.05, 0.6
+
+
+class FirstLook:
+    """Draws scenes with one small program."""
+
+    def __init__(
+        self,
+        context: Context,
+        library: ProgramLibrary,
+        geometry: Geometry,
+        displaced: Callable[[Scene], Scene] = lambda scene: scene,
+        centered: Callable[[Scene], Scene] = lambda scene: scene,
+    ) -> None:
+        """geometry: of the mapper that renders the scenes later, which then has it on the device already; displaced:
+        gives a scene with the meshes that the mapper has in place of its own, as far as that is known; centered: gives
+        a scene with the places that the mapper has."""
+        self._context = context
+        self._draw = library.draw("first_look/first_look.vert", "first_look/first_look.frag")
+        self._geometry = geometry
+        self._displaced, self._centered = displaced, centered
+        self._surfaces = GrowingBuffer(context, "plain surfaces")
+        self._opacities = GrowingBuffer(context, "opacities of instances")
+        self._camera = GrowingBuffer(context, "camera of the first look")
+        self._shown: Scene | None = None
+        self._blends = False
+        """Whether something is neither opaque nor a hole."""
+        self._sky = np.zeros(3)
+
+    def shows_parts_of(self, scene: Scene) -> bool:
+        """Whether a scene can be drawn with what the one before has on the device."""
+        return self._has_parts_of(self._centered(scene))
+
+    def _has_parts_of(self, scene: Scene) -> bool:
+        before = self._shown
+        return (
+            before is not None
+            and same_members(scene.meshes, before.meshes)
+            and same_members(scene.instances, before.instances)
+            and same_members(scene.materials, before.materials)
+        )
+
+    def draw(self, scene: Scene) -> np.ndarray:
+        """(height, width, 4) float32 scene-linear Rec.709, premultiplied alpha, row 0 at the bottom.
+
+        A lens is a pinhole. Raises DeviceError when the device cannot hold the scene or draw so many pixels, and
+        SceneError for a camera that sees nothing.
+        """
+        width, height = scene.camera.resolution
+        if max(width, height) > MOST_RASTER_PIXELS:
+            raise DeviceError(f"{width} x {height} pixels are more than devices draw; make the viewport smaller")
+        scene = self.take(scene)
+        self._camera.upload(camera_view(scene.camera, 0, height, (0.0, 0.0)))
+        gl = self._context.moderngl
+        color, depth = gl.texture((width, height), 4, dtype="f4"), gl.depth_texture((width, height))
+        framebuffer = gl.framebuffer([color], depth)
+        try:
+            framebuffer.clear(*self._background(scene), depth=1.0)
+            self._draw_surfaces(framebuffer, scene, self._camera.buffer, _SOLID)
+            if self._blends:
+                self._draw_surfaces(framebuffer, scene, self._camera.buffer, _TRANSPARENT)
+            pixels = np.frombuffer(framebuffer.read(components=4, dtype="f4"), np.float32)
+            return pixels.reshape(height, width, 4).copy()
+        finally:
+            for resource in (framebuffer, color, depth):
+                resource.release()
+
+    def rasterize(self, framebuffer: moderngl.Framebuffer, scene: Scene, camera: moderngl.Buffer) -> None:
+        """The nearest surfaces of a scene that take() returned, transparent ones too.
+
+        framebuffer: of three float textures: color, premultiplied; normal and view depth, meters; numbers of instance
+        and material, 0 where there is no surface (shaders/first_look/first_look.frag).
+        camera: CAMERA_VIEW.
+        """
+        framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._draw_surfaces(framebuffer, scene, camera, _SOLID | _TRANSPARENT)
+
+    def _background(self, scene: Scene) -> tuple[float, ...]:
+        opaque = not scene.settings.film_transparent
+        return (*(scene.exposure * self._sky if opaque else np.zeros(3)), float(opaque))
+
+    def _draw_surfaces(
+        self, framebuffer: moderngl.Framebuffer, scene: Scene, camera: moderngl.Buffer, drawn: int
+    ) -> None:
+        buffers = {
+            "Camera": camera,
+            "Triangles": self._geometry.triangles.buffer,
+            "Attributes": self._geometry.attributes.buffer,
+            "PlainSurfaces": self._surfaces.buffer,
+            "InstanceOpacities": self._opacities.buffer,
+        }
+        brightest = max(float(self._sky.max()), 1e-9)
+        sky = self._sky * (np.clip(brightest * scene.exposure, _DARKEST_SKY, _BRIGHTEST_SKY) / brightest)
+        if not sky.any():
+            sky = np.full(3, _DARKEST_SKY)
+        blended = drawn == _TRANSPARENT
+        framebuffer.depth_mask = not blended  # what is transparent hides nothing
+        self._context.moderngl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self._draw.draw(
+            framebuffer,
+            3 * self._geometry.triangle_count,
+            buffers,
+            {"sky": sky, "headlight": HEADLIGHT, "exposure": scene.exposure, "drawn": drawn},
+            state=moderngl.DEPTH_TEST | (moderngl.BLEND if blended else moderngl.NOTHING),
+        )
+        framebuffer.depth_mask = True
+
+    def take(self, scene: Scene) -> Scene:
+        """Upload what is not the very object of the scene before; returns the scene to be drawn, which is centered."""
+        scene = self._centered(scene)
+        if not self._has_parts_of(scene):
+            self._shown = None
+            self._geometry.build(self._displaced(scene), len(scene.materials))
+            surfaces = [plain_surface(owner.graph, scene.images) for owner in (*scene.materials, default_material())]
+            opacities = [_opacity(placement.instance) for placement in self._geometry.placements]
+            self._surfaces.upload(_records(surfaces))
+            self._opacities.upload(np.array(opacities or [0.0], np.float32))
+            self._blends = any(surface.opacity < 1.0 for surface in surfaces)
+        self._sky = np.maximum(scene.world.radiance, 0.0).astype(np.float64)
+        if scene.world.graph is not None:
+            self._sky = self._sky * plain_surface(scene.world.graph, scene.images).emission
+        self._shown = scene
+        return scene
+
+    def release(self) -> None:
+        """Give the buffers back, but for the geometry, which is somebody else's as well."""
+        for buffer in (self._surfaces, self._opacities, self._camera):
+            buffer.release()
+
+
+def _opacity(instance: Instance) -> float:
+    if instance.shadow_catcher or not instance.visibility & RayVisibility.CAMERA:
+        return -1.0
+    return 0.0 if instance.holdout else 1.0
+
+
+def _records(surfaces: list[PlainSurface]) -> np.ndarray:
+    records = PLAIN_SURFACE.zeros(len(surfaces))
+    for name in ("color", "metallic", "emission", "roughness", "opacity"):
+        records[name] = [getattr(surface, name) for surface in surfaces]
+    return records

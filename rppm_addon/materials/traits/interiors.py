@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node graphs of volumes, taken apart into what they say of a medium."""
+
+import dataclasses
+from collections.abc import Collection
+
+from ...scene.node_graphs import NodeGraph
+from ..nodes import KINDS
+from .emitted import is_positive, light_variation, reachable
+
+_ABSORBING = {"volume_absorption": "density"}
+_EMITTING = {"emission": "strength", "background": "strength"}
+"""Kinds of nodes, and the input that none of it comes from when it is 0."""
+_SURFACES = {"bsdf_principled": "emission_strength"}
+"""Likewise: surfaces say nothing of a volume, as in Cycles."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Interior:
+    """A medium by graphs whose "emission" is the coefficient; None where there is none."""
+
+    absorption: NodeGraph | None = None
+    """In 1/m."""
+    emission: NodeGraph | None = None
+    """In W/(m^3 sr)."""
+    varies: bool = False
+    """True where the coefficients may depend on the place."""
+
+    @classmethod
+    def of(cls, graph: NodeGraph | None) -> "Interior":
+        """The medium that a graph of a volume makes."""
+        if graph is None:
+            return cls()
+        if any(node.kind not in KINDS for node in graph.nodes):
+            return cls(graph)  # which whoever compiles it reports
+        absorption, emission = _part(graph, _ABSORBING), _part(graph, _EMITTING)
+        return cls(absorption, emission, bool(absorption or emission) and bool(light_variation(graph)))
+
+
+def _part(graph: NodeGraph, kinds: dict[str, str]) -> NodeGraph | None:
+    """The graph with nothing but nodes of some kinds in effect; None where that gives nothing."""
+    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
+    if not any(is_positive(node, kinds[node.kind]) for node in nodes if node.kind in kinds):
+        return None
+    others = {kind: name for kind, name in (_ABSORBING | _EMITTING | _SURFACES).items() if kind not in kinds}
+    return _without(graph, others) if _has(graph, others) else graph
+
+
+def _has(graph: NodeGraph, kinds: Collection[str]) -> bool:
+    return any(node.kind in kinds for node in graph.nodes)
+
+
+def _without(graph: NodeGraph, kinds: dict[str, str]) -> NodeGraph:
+    nodes = [
+        dataclasses.replace(node, inputs=node.inputs | {kinds[node.kind]: 0.0}) if node.kind in kinds else node
+        for node in graph.nodes
+    ]
+    return dataclasses.replace(graph, nodes=nodes)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""First looks at the scenes of a session, until the renderer has a picture of its own."""
+
+import math
+
+import numpy as np
+
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...gl.programs.sources import ShaderError
+from ...integrator.pilot_view import enlarged
+from ...integrator.progressive import ProgressivePhotonMapper
+from ...integrator.viewport.first_look import FirstLook
+from ...scene.errors import DeviceLostError, RppmError
+from ...scene.scene import Scene
+from ..render.renderer import log
+from .resolution_scaler import at_level
+
+MOST_PIXELS = 1 << 22
+"""Pixels that a first look is drawn with at most. A larger picture is enlarged from it: the memory on the device is not
+part of the forecast."""
+
+
+class FirstLooks:
+    """Draws scenes with the geometry that the session's mapper has on the device, or will need there anyway."""
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        self._context = context
+        self._library = library
+        self._look: FirstLook | None = None
+
+    def of(self, mapper: ProgressivePhotonMapper) -> FirstLook:
+        """The first look that shares a mapper's geometry. It is the same one until release() is called."""
+        if self._look is None:
+            built = mapper.device_scene
+            self._look = FirstLook(
+                self._context, self._library, built.geometry, built.displacement.as_known, built.centering.centered
+            )
+        return self._look
+
+    def shows_parts_of(self, scene: Scene) -> bool:
+        """Whether a scene can be drawn with what the scene before has on the device."""
+        return self._look is not None and self._look.shows_parts_of(scene)
+
+    def draw(self, scene: Scene, mapper: ProgressivePhotonMapper) -> np.ndarray | None:
+        """A picture as FirstLook.draw returns it, or None for a panorama and for a scene that cannot be drawn.
+
+        What is wrong with such a scene is reported by the render that follows. Raises DeviceLostError.
+        """
+        if scene.camera.panorama is not None:
+            return None
+        width, height = scene.camera.resolution
+        level = min(1.0, math.sqrt(MOST_PIXELS / (width * height)))
+        try:
+            return enlarged(self.of(mapper).draw(at_level(scene, level)), width, height)
+        except DeviceLostError:
+            raise
+        except (RppmError, ShaderError):
+            log.info("there is no first look", exc_info=True)
+            return None
+
+    def release(self) -> None:
+        """Give the buffers back, but for the mapper's geometry."""
+        if self._look is not None:
+            self._look.release()
+            self._look = None

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures as they are handed out: denoised where the settings ask for it, with the passes that were asked for."""
+
+import logging
+import time
+
+from ...denoising.denoiser import Denoiser
+from ...scene.errors import DenoiserError
+from ...scene.passes import NOISY_IMAGE
+from ...scene.settings import RenderSettings
+from .results import Frame, RenderResult
+
+log = logging.getLogger(__name__)
+
+
+def wanted_frame(frame: Frame, settings: RenderSettings) -> Frame:
+    """A frame of the film without the passes that it holds for denoising alone."""
+    names = {entry.name for entry in settings.picture_passes}
+    return Frame(frame.combined, {name: array for name, array in frame.passes.items() if name in names})
+
+
+def denoised_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser) -> Frame:
+    """A frame of the film as it is when nothing more is added to it: with its noise as Noisy Image, where the settings
+    ask for denoising. Raises DenoiserError; wanted_frame needs no denoiser.
+    """
+    wanted = wanted_frame(frame, settings)
+    if not settings.use_denoising:
+        return wanted
+    combined = denoiser.denoise(frame.combined, frame.passes, settings)
+    return Frame(combined, {**wanted.passes, NOISY_IMAGE.name: frame.combined})
+
+
+def noisy_frame(frame: Frame, settings: RenderSettings) -> Frame:
+    """The same where denoising fails, or is not waited for."""
+    wanted = wanted_frame(frame, settings)
+    noisy = {NOISY_IMAGE.name: frame.combined} if settings.use_denoising else {}
+    return Frame(wanted.combined, {**wanted.passes, **noisy})
+
+
+def finished_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser, warnings: list[str]) -> Frame:
+    """denoised_frame, or where it fails noisy_frame, and a line more in ``warnings``."""
+    try:
+        return denoised_frame(frame, settings, denoiser)
+    except DenoiserError as error:
+        text = f"the picture is not denoised: {error}"
+        if text not in warnings:
+            log.warning("%s", text)
+            warnings.append(text)
+        return noisy_frame(frame, settings)
+
+
+def finished_result(result: RenderResult, settings: RenderSettings, denoiser: Denoiser) -> RenderResult:
+    """A result whose frame is the film's, with its finished frame. One that was stopped is not denoised: whoever stops
+    a render does not want to wait."""
+    if result.stopped or not settings.use_denoising:
+        return RenderResult(noisy_frame(result.frame, settings), result.statistics, result.stopped)
+    start, statistics = time.perf_counter(), result.statistics
+    frame = finished_frame(result.frame, settings, denoiser, statistics.warnings)
+    seconds = time.perf_counter() - start
+    statistics.seconds += seconds
+    statistics.stage_seconds = {**statistics.stage_seconds, "denoising": seconds}
+    return RenderResult(frame, statistics, result.stopped)
