@@ -118,9 +118,9 @@ def frame_times(size: int, side: int, frames: int, iterations: int, persistent: 
     times = Times()
     builds = []
     build = Acceleration.build
-    from rppm_addon.blender.engine import engine
+    from rppm_addon.blender.engine import render_engine
 
-    render = engine.render_final
+    render = render_engine.render_final
 
     def begin(*_: object) -> None:
         times.frames.append({})
@@ -135,13 +135,13 @@ def frame_times(size: int, side: int, frames: int, iterations: int, persistent: 
         set_up(scene, folder, size, WARM_UP + frames, persistent, iterations=iterations)
         for handler, function in handlers:
             handler.append(function)
-        engine.render_final = rendered
+        render_engine.render_final = rendered
         Acceleration.build = lambda *a, **k: (builds.append(True), build(*a, **k))[1]
         try:
             with observing(times):
                 bpy.ops.render.render(animation=True)
         finally:
-            Acceleration.build, engine.render_final = build, render
+            Acceleration.build, render_engine.render_final = build, render
             for handler, function in handlers:
                 handler.remove(function)
     counted = times.frames[WARM_UP:]

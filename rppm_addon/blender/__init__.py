@@ -5,7 +5,7 @@ import sys
 
 from ..wheel_libraries import add_wheel_libraries
 from . import background, operators, panels, preferences, properties, reports, self_test
-from .engine import broken_frames, engine, frame_reuse, preparing
+from .engine import broken_frames, frame_reuse, preparing, render_engine
 from .export.images import kept_images
 from .render_client import renderer_process, renderer_thread
 
@@ -15,7 +15,7 @@ def register() -> None:
     add_wheel_libraries(sys.path)
     background.register()
     properties.register()
-    engine.register()
+    render_engine.register()
     operators.register()
     self_test.register()
     panels.register()
@@ -38,7 +38,7 @@ def unregister() -> None:
     panels.unregister()
     self_test.unregister()
     operators.unregister()
-    engine.unregister()
+    render_engine.unregister()
     properties.unregister()
     reports.forget()
     renderer_thread.release()

@@ -98,18 +98,18 @@ def test_who_is_stopped_does_not_stop_the_next(remote, scene, pictures):
 def test_a_render_goes_on_where_it_was_stopped(remote, scene, tmp_path):
     """Once it is complete it is there at once, and of another scene it begins anew, its file being set aside."""
     path = tmp_path / "kept.exr"
-    longer = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, iterations=8))
+    longer = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, iterations=64))
     with Renderer() as renderer:
         whole = renderer.render(longer).frame.combined
     first = remote.render(longer, Job(stop_at=2, checkpoint=path))
-    assert first.stopped and path.is_file() and 2 <= first.statistics.iterations < 8
+    assert first.stopped and path.is_file() and 2 <= first.statistics.iterations < 64
     job = Job(checkpoint=path)
     second = remote.render(longer, job)
-    assert job.iterations == list(range(first.statistics.iterations, 9)) and not second.stopped
+    assert job.iterations == list(range(first.statistics.iterations, 65)) and not second.stopped
     np.testing.assert_array_equal(second.frame.combined, whole)
     job = Job(checkpoint=path)
     third = remote.render(longer, job)
-    assert job.iterations == [8]
+    assert job.iterations == [64]
     np.testing.assert_array_equal(third.frame.combined, whole)
     job = Job(checkpoint=path)
     other = remote.render(moved(longer, 0.3), job)

@@ -114,7 +114,7 @@ def use(folder: str) -> dict:
     build_scene()
     report = {"blender": bpy.app.version_string, "here": render(Path(folder) / "here.exr")}
     report["panels"] = draw_panels()
-    process = module("blender.renderer_process")
+    process = module("blender.render_client.renderer_process")
     process.is_used = lambda: True  # as where there is a window
     report["process"] = render(Path(folder) / "process.exr")
     report["device"] = process.renderer_process().device.name
@@ -124,7 +124,7 @@ def use(folder: str) -> dict:
     import moderngl
 
     report["moderngl"] = moderngl.__file__
-    engine = module("blender.engine").RppmRenderEngine
+    engine = module("blender.engine.render_engine").RppmRenderEngine
     report["engine"] = {name: getattr(engine, name) for name in ("bl_use_preview", "bl_use_eevee_viewport")}
     report["engine"]["viewport"] = all(name in vars(engine) for name in ("view_update", "view_draw"))
     bpy.ops.preferences.addon_disable(module=MODULE)

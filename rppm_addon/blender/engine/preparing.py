@@ -17,7 +17,7 @@ from ..export.geometry.strands.round_meshes import ROUND_TYPES
 from ..export.images.images import MISSING, ImageTable
 from ..export.shading.nodes.materials import export_material
 from ..render_client import renderer_process
-from .engine import RppmRenderEngine
+from .render_engine import RppmRenderEngine
 
 logger = logging.getLogger(__name__)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from animations import ANIMATIONS, FRAMES, nothing, stage
 
-from rppm_addon.blender.engine import engine as engine_module
+from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.export import SceneSync, export_scene
 from rppm_addon.gl.context.context import Context
 from rppm_addon.gl.programs.programs import ProgramLibrary

@@ -9,7 +9,7 @@ from support.baking import add_uv_map, aim_at, bake, select
 from test_engine import Proxy
 
 from rppm_addon.blender.engine import baking
-from rppm_addon.blender.engine import engine as engine_module
+from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.export.updates.baking import nearest_texels
 from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.scene.errors import DeviceError
