@@ -16,6 +16,7 @@ import numpy as np
 from .scene.common import whole_files
 from .scene.common.declared import declared
 from .scene.errors import RppmError, SceneError
+from .scene.images import encode_srgb
 from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
 
 
@@ -237,8 +238,7 @@ def standard_view(combined: np.ndarray) -> np.ndarray:
     if alpha.shape[-1]:
         color = np.divide(color, alpha, out=color.copy(), where=(alpha > 0.0) & (alpha < 1.0))
     color = color.clip(0.0, 1.0)
-    encoded = np.where(color <= 0.0031308, color * 12.92, 1.055 * color ** (1 / 2.4) - 0.055)
-    return np.rint(np.concatenate([encoded, alpha], axis=-1) * 255.0).astype(np.uint8)
+    return np.rint(np.concatenate([encode_srgb(color), alpha], axis=-1) * 255.0).astype(np.uint8)
 
 
 def refuse_spoiled(path: str | Path, combined: np.ndarray) -> None:

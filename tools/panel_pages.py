@@ -90,13 +90,14 @@ class ListingLayout(RecordingLayout):
         called = text or self.heading or declared.name
         self.record.section.shown.setdefault(_path(data, name), Shown(called, _path(data, name), declared))
 
-    def operator(self, identifier: str, text: str = "", **more: object) -> SimpleNamespace:
-        """List a button that has words."""
-        made = super().operator(identifier, text=text, **more)
+    def operator(self, identifier: str, text: str | None = None, **more: object) -> SimpleNamespace:
+        """List a button that has words: the operator's name where the panel gives none."""
+        made = super().operator(identifier, text=text or "", **more)
         module, name = identifier.split(".")
         declared = getattr(getattr(bpy.ops, module), name).get_rna_type()
-        if text and declared.description:
-            self.record.section.buttons[text] = declared.description
+        words = declared.name if text is None else text
+        if words and declared.description:
+            self.record.section.buttons[words] = declared.description
         return made
 
 

@@ -46,7 +46,11 @@ _PASSES = (
 CASES = {
     "room of glass": Case("first_light"),
     "rasterized splats": Case("first_light", ("rppm.density_estimation=RASTERIZED",)),
-    "splat roulette": Case("first_light", ("rppm.density_estimation=RASTERIZED", "rppm.use_splat_roulette=true")),
+    "splat roulette": Case(
+        "first_light",
+        ("rppm.density_estimation=RASTERIZED",),
+        runs=(("--samples", "3", "--use-splat-roulette"),),
+    ),
     "photons alone": Case("first_light", ("rppm.direct_light=PHOTONS", "rppm.use_final_gather=false")),
     "radii of all pixels alike": Case("pool", ("rppm.use_adaptive_radius=false",)),
     "pool": Case("pool"),

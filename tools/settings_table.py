@@ -11,7 +11,7 @@ BEGIN, END = "<!-- begin: tools/settings_table.py -->", "<!-- end -->"
 sys.path.insert(0, str(ROOT))
 
 from rppm_addon.scene import RenderSettings  # noqa: E402
-from rppm_addon.scene.setting_info import SettingInfo, settings_of  # noqa: E402
+from rppm_addon.scene.settings.setting_info import SettingInfo, settings_of  # noqa: E402
 
 
 def table() -> str:

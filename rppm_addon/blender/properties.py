@@ -13,8 +13,8 @@ from bpy import props
 
 from ..scene import RenderSettings
 from ..scene.passes import COMBINED, FILM_PASSES, PASSES
-from ..scene.setting_info import SettingInfo, settings_of
 from ..scene.settings import MOST_PHOTONS, DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
+from ..scene.settings.setting_info import SettingInfo, settings_of
 from ..session.render.bake_passes import BAKE_TYPES
 
 

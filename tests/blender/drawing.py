@@ -76,7 +76,10 @@ def context_of(scene, **members):
             "scene": scene,
             "view_layer": scene.view_layers[0],
             "region": SimpleNamespace(width=400),
-            "preferences": SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),  # 0 without a window
+            "preferences": SimpleNamespace(
+                system=SimpleNamespace(ui_scale=1.0),  # 0 without a window
+                view=SimpleNamespace(show_developer_ui=True),
+            ),
         }
         | nothing
         | members

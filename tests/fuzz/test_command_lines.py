@@ -14,7 +14,7 @@ from rppm_addon.commands.options.arguments import parser
 from rppm_addon.commands.options.options import split_values
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.scene.setting_info import settings_of
+from rppm_addon.scene.settings.setting_info import settings_of
 
 _NAMES = sorted(info.property_of(name) for name, info in settings_of(RenderSettings).items())
 _RANGES = st.sampled_from(["1..100", "5..1", "1..9..0", "0:4", "4:0", "16x12", "0x5", "1e9x2"])

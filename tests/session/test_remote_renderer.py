@@ -113,14 +113,14 @@ def test_a_render_goes_on_where_it_was_stopped(remote, scene, tmp_path):
     np.testing.assert_array_equal(third.frame.combined, whole)
     job = Job(checkpoint=path)
     other = remote.render(moved(longer, 0.3), job)
-    assert job.iterations == list(range(9)) and (tmp_path / "kept_before.exr").is_file()
+    assert job.iterations == list(range(65)) and (tmp_path / "kept_before.exr").is_file()
     assert any("begins anew" in text and "other camera" in text for text in other.statistics.warnings)
     kept = (tmp_path / "kept_before.exr").read_bytes()
     remote.render(longer, Job(checkpoint=path))
     assert (tmp_path / "kept_before2.exr").is_file() and (tmp_path / "kept_before.exr").read_bytes() == kept
     job = Job()
     remote.render(longer, job)
-    assert job.iterations == list(range(9))  # without a checkpoint nothing is gone on with
+    assert job.iterations == list(range(65))  # without a checkpoint nothing is gone on with
 
 
 def test_an_error_ends_one_render(remote, scene, pictures):

@@ -151,7 +151,7 @@ class OmissionList:
             if switched_off:
                 report.warn(
                     f"Passes that are on for Cycles only: {', '.join(switched_off)}; switch them on in View Layer > "
-                    "Passes, or take all of Cycles' settings with Sampling > From Cycles"
+                    "Passes, or take all of Cycles' settings with Sampling > Copy from Cycles"
                 )
 
 

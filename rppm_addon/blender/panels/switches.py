@@ -4,7 +4,7 @@
 import bpy
 
 from ...scene import RenderSettings
-from ...scene.setting_info import settings_of
+from ...scene.settings.setting_info import settings_of
 from ..properties import VIEWPORT_APART, VIEWPORT_PHOTONS, viewport_property
 
 _MEANINGS = {name: info.zero.capitalize() for name, info in settings_of(RenderSettings).items()}

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...scene import RenderSettings
 from ...scene.errors import SettingsError
-from ...scene.setting_info import SettingInfo, settings_of
+from ...scene.settings.setting_info import SettingInfo, settings_of
 
 _DEFAULTS = RenderSettings()
 _INFOS = settings_of(RenderSettings)

@@ -16,6 +16,15 @@ from ..density_estimation.radii import RADIUS_PARAMETERS, Radii, shrinkage
 from ..lights.lights import LIGHT_PARAMETERS, Lights
 from ..surfaces.geometry import Geometry
 
+_SETTINGS = {
+    "max_bounces": "uint",
+    "transparent_max_bounces": "uint",
+    "camera_bounces": "uint",
+    "photon_bounces": "uint",
+    "film_transparent": "uint",
+}
+"""Members that are attributes of RenderSettings, by name and type."""
+
 ITERATION_PARAMETERS = Record(
     "IterationParameters",
     number="uint",
@@ -26,14 +35,10 @@ ITERATION_PARAMETERS = Record(
     direct_world_flux="float",
     photon_flux="float",
     limits_bounces="uint",
-    max_bounces="uint",
-    transparent_max_bounces="uint",
-    camera_bounces="uint",
-    photon_bounces="uint",
+    **_SETTINGS,
     specular_alpha="float",
     final_gather="uint",
     next_event="uint",
-    film_transparent="uint",
     has_round_shapes="uint",
     shrinkage="float",
     **RADIUS_PARAMETERS,
@@ -42,8 +47,8 @@ ITERATION_PARAMETERS = Record(
 
 ``number``, ``number_in_film``, ``seed`` and ``direct_world_flux`` are those of Iteration. ``photon_flux`` is the mean
 flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
-shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, and what the lights
-and the radii declare.
+shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, or members that the
+lights and the radii declare.
 """
 
 
@@ -73,14 +78,10 @@ class IterationBlock(BufferSet):
             "direct_world_flux": iteration.direct_world_flux,
             "photon_flux": lights.photon_flux,
             "limits_bounces": lights.limits_bounces,
-            "max_bounces": settings.max_bounces,
-            "transparent_max_bounces": settings.transparent_max_bounces,
-            "camera_bounces": settings.camera_bounces,
-            "photon_bounces": settings.photon_bounces,
+            **{name: getattr(settings, name) for name in _SETTINGS},
             "specular_alpha": settings.specular_roughness**2,
             "final_gather": settings.use_final_gather,
             "next_event": settings.direct_light is DirectLight.RAYS,
-            "film_transparent": settings.film_transparent,
             "has_round_shapes": geometry.has_round_shapes,
             "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),
         }

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...scene.images import Image
+from ...scene.images import Image, decode_srgb
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from ..nodes import KINDS
 from ..nodes.node_kinds import SocketType
@@ -199,5 +199,5 @@ def mean_color(image: Image) -> np.ndarray:
     pixels = image.pixels[tuple(slice(step // 2, None, step) for step in steps)][..., :3]
     colors = pixels / 255.0 if pixels.dtype == np.uint8 else pixels.astype(np.float64)
     if image.encoding == "SRGB":
-        colors = np.where(colors <= 0.04045, colors / 12.92, ((np.maximum(colors, 0.0) + 0.055) / 1.055) ** 2.4)
+        colors = decode_srgb(colors)
     return np.nan_to_num(colors.reshape(-1, 3), posinf=0.0, neginf=0.0).mean(axis=0)

@@ -10,8 +10,9 @@ from blender_scenes import add_mesh, add_node, export, export_graph, link, new_m
 from test_export_lights import cycles_radiance
 
 from rppm_addon.blender.export.images import kept_images
-from rppm_addon.blender.export.images.color_spaces import scene_linear, to_srgb
+from rppm_addon.blender.export.images.color_spaces import scene_linear
 from rppm_addon.blender.export.images.images import MISSING
+from rppm_addon.scene.images import encode_srgb
 
 
 def new_image(name, pixels, is_float=False, space=None):
@@ -267,7 +268,7 @@ def test_gray_is_gray_in_all_spaces(scene, space):
 def test_places_of_colors_stay(scene):
     """From bytes as from floats: Blender decodes both alike."""
     colors = np.random.default_rng(3).random((3, 4, 3))
-    assert to_srgb(scene_linear(colors, "sRGB")) == pytest.approx(colors, abs=1e-5)
+    assert encode_srgb(scene_linear(colors, "sRGB")) == pytest.approx(colors, abs=1e-5)
     assert len(bpy.data.images) == 0
 
 

@@ -10,10 +10,10 @@ from blender_scenes import add_light, export
 from rppm_addon.blender.export.view_layer.settings import export_settings
 from rppm_addon.blender.properties import VIEWPORT_APART, VIEWPORT_DENOISING, VIEWPORT_SAMPLING, viewport_property
 from rppm_addon.scene import DensityEstimation, DirectLight, FirstPhotonHits, PixelFilter, RenderSettings
-from rppm_addon.scene.setting_info import settings_of
+from rppm_addon.scene.settings.setting_info import settings_of
 
-# properties that Blender itself has, and what viewports alone have
-ELSEWHERE = {"film_transparent", "passes", "aovs", "light_groups", "denoising_start_sample"}
+# properties that Blender itself has, what viewports alone have, and what benchmarks alone set
+ELSEWHERE = {"film_transparent", "passes", "aovs", "light_groups", "denoising_start_sample", "use_splat_roulette"}
 # what a bake holds, what makes the seed another one, a member of the scene, an object of Blender's, exported as a
 # point, and what viewports have apart
 BESIDES = {

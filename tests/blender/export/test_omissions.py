@@ -102,7 +102,7 @@ def test_passes_that_are_on_for_cycles_only(lit):
     layer = lit.view_layers[0]
     layer.cycles.denoising_store_passes = layer.cycles.pass_debug_sample_count = True
     (text,) = warnings_about(lit, "Passes that are on for Cycles only")
-    assert "Denoising Data, Debug Sample Count;" in text and "From Cycles" in text
+    assert "Denoising Data, Debug Sample Count;" in text and "Copy from Cycles" in text
     layer.rppm.use_pass_denoising_data = layer.rppm.use_pass_debug_sample_count = True
     assert not warnings_about(lit, "Passes that are on for Cycles only")
 

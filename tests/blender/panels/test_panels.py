@@ -30,9 +30,9 @@ OF_SWITCH = {
     "time_limit": "RPPM_PT_sampling_final",
     "photons": "RPPM_PT_sampling_final",
     "preview_photons": "RPPM_PT_sampling_viewport",
-    "radius_minimum": "RPPM_PT_radius",
-    "radius_maximum": "RPPM_PT_radius",
-    "cubemap_resolution": "RPPM_PT_acceleration_structure",
+    "radius_minimum": "RPPM_PT_developer",
+    "radius_maximum": "RPPM_PT_developer",
+    "cubemap_resolution": "RPPM_PT_developer",
 }
 """The panel that shows a setting with its switch."""
 PANELS = [cls for cls in panels.CLASSES if issubclass(cls, RppmPanel)]
@@ -83,6 +83,19 @@ def test_panels_are_named_and_shown_for_this_engine_only(scene):
     parents = {cls.bl_parent_id for cls in PANELS if getattr(cls, "bl_parent_id", "")}
     assert all(hasattr(bpy.types, parent) for parent in parents)
     assert len(drawn_panels(PANELS, context_of(scene, **contexts))) >= 20
+
+
+def test_settings_of_developers_show_with_developer_extras_alone(scene):
+    def shown(extras):
+        context = context_of(scene)
+        context.preferences.view.show_developer_ui = extras
+        records = drawn_panels(PANELS, context)
+        return {name for record in records.values() for name in record.properties}
+
+    assert shown(True) - shown(False) == {
+        "density_estimation", "first_camera_hits", "first_photon_hits", "cubemap_resolution", "cubemap_center_object",
+        "radius_minimum", "radius_maximum",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("kind", ["POINT", "SPOT", "SUN", "AREA"])

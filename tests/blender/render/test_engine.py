@@ -11,8 +11,8 @@ import pytest
 from blender_scenes import set_world
 from PIL import Image as Picture
 
-from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.engine import final
+from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.session.checkpoints.checkpoint_file import read_summary

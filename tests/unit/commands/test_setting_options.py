@@ -7,7 +7,7 @@ from rppm_addon.commands.options.arguments import parser
 from rppm_addon.commands.options.options import values_and_limits
 from rppm_addon.scene import PixelFilter, RenderSettings
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.scene.setting_info import settings_of
+from rppm_addon.scene.settings.setting_info import settings_of
 
 RENDER = ("render", "scene.npz", "-o", "picture.exr")
 

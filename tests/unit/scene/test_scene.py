@@ -22,8 +22,8 @@ from rppm_addon.scene import (
     save_scene,
 )
 from rppm_addon.scene.errors import SceneError, SettingsError
-from rppm_addon.scene.setting_info import settings_of
 from rppm_addon.scene.settings import MOST_PHOTONS, MOST_SEGMENTS
+from rppm_addon.scene.settings.setting_info import settings_of
 from rppm_addon.scene.storage import storage
 from tools import settings_table
 

@@ -11,11 +11,6 @@ WHITE_IN_CYCLES = {"Rec.2100-HLG": 2.03, "Rec.2100-PQ": 2.03}
 """By space, how much brighter Cycles takes images than Blender itself: 100 nits are 1, not 203."""
 
 
-def to_srgb(linear: np.ndarray) -> np.ndarray:
-    """Values of sRGB's transfer curve, which goes on above 1."""
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0.0) ** (1.0 / 2.4) - 0.055)
-
-
 def scene_linear(colors: np.ndarray, space: str) -> np.ndarray:
     """(height, width, 3) float32 colors of a space that Blender knows, as the scene's linear ones.
 

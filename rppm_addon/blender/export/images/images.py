@@ -9,10 +9,10 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ....scene import Image
 from ....scene.common.whole_files import is_no_file
+from ....scene.images import Image, encode_srgb
 from ..common.slices import Slices
-from .color_spaces import WHITE_IN_CYCLES, scene_linear, to_srgb
+from .color_spaces import WHITE_IN_CYCLES, scene_linear
 from .kept_images import keep, kept
 from .texture_limit import limited
 
@@ -246,7 +246,7 @@ def _encoded(look: _Look, pixels: np.ndarray) -> Image:
         # Blender has made them linear.
         pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
         if space == "sRGB":
-            pixels[..., :3] = to_srgb(pixels[..., :3])
+            pixels[..., :3] = encode_srgb(pixels[..., :3])
         return Image(look.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
     if look.needs_blender:
         linear = scene_linear(pixels[..., :3], space) * WHITE_IN_CYCLES.get(space, 1.0)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....scene import RenderSettings
 from ....scene.passes import COMBINED
-from ....scene.setting_info import settings_of
+from ....scene.settings.setting_info import settings_of
 from ...properties import VIEWPORT_APART, viewport_property
 from .passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
 

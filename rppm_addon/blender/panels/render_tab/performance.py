@@ -66,12 +66,7 @@ class RPPM_PT_acceleration_structure(RppmPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        column = self.column()
-        column.prop(context.scene.rppm, "acceleration_structure", text="Structure")
-        column = column.column()
-        column.active = context.scene.rppm.acceleration_structure != AccelerationStructure.BVH.name
-        draw_setting(column, context.scene, "cubemap_resolution", "Resolution")
-        column.prop(context.scene.rppm, "cubemap_center_object", text="Center")
+        self.column().prop(context.scene.rppm, "acceleration_structure", text="Structure")
 
 
 class RPPM_PT_status(RppmPanel, bpy.types.Panel):
@@ -153,6 +148,32 @@ _COMPARED = (
 """Lines of the table and what they say of a render, the newest on the left."""
 
 
+class RPPM_PT_developer(RppmPanel, bpy.types.Panel):
+    """Settings by which RPPM itself is tested and measured; their defaults serve every scene."""
+
+    bl_label = "Developer"
+    bl_parent_id = "RPPM_PT_diagnostics"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Whether the preference Developer Extras is on, without which Cycles hides its debug panel too."""
+        return super().poll(context) and context.preferences.view.show_developer_ui
+
+    def draw(self, context: bpy.types.Context) -> None:
+        scene, settings = context.scene, context.scene.rppm
+        column = self.column()
+        column.prop(settings, "density_estimation")
+        column.prop(settings, "first_camera_hits")
+        column.prop(settings, "first_photon_hits")
+        cubemap = column.column()
+        cubemap.active = settings.acceleration_structure != AccelerationStructure.BVH.name
+        draw_setting(cubemap, scene, "cubemap_resolution", "Cubemap Resolution")
+        cubemap.prop(settings, "cubemap_center_object")
+        draw_setting(column, scene, "radius_minimum", "Minimum Radius")
+        draw_setting(column, scene, "radius_maximum", "Maximum Radius")
+
+
 STATUS = (RPPM_PT_status,)
 CLASSES = (
     RPPM_PT_performance,
@@ -161,4 +182,5 @@ CLASSES = (
     RPPM_PT_diagnostics,
     RPPM_PT_acceleration_structure,
     RPPM_PT_last_renders,
+    RPPM_PT_developer,
 )

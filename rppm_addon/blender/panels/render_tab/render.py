@@ -8,7 +8,6 @@ from ...export.view_layer.settings import export_settings
 from ...readings import radius_reading
 from ...reports import reports_of
 from ..base import RppmPanel, length_text, reading
-from ..switches import draw_setting
 
 
 class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
@@ -43,8 +42,6 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
         column = self.column()
         column.prop(scene.rppm, "radius_scale", text="Initial")
         column.prop(scene.rppm, "use_adaptive_radius", text="Adaptive")
-        draw_setting(column, scene, "radius_minimum", "Minimum")
-        draw_setting(column, scene, "radius_maximum", "Maximum")
         column.prop(scene.rppm, "alpha")
         column.separator()
         final = radius_reading(export_settings(scene), *frame_size(scene.render))

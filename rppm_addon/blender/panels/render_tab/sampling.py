@@ -26,8 +26,8 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
         column.prop(settings, "use_final_gather")
         if RPPM_OT_copy_from_cycles.poll(context):
             row = column.row(align=True)
-            row.operator(RPPM_OT_copy_from_cycles.bl_idname, text="From Cycles")
-            row.operator(RPPM_OT_copy_to_cycles.bl_idname, text="To Cycles")
+            row.operator(RPPM_OT_copy_from_cycles.bl_idname)
+            row.operator(RPPM_OT_copy_to_cycles.bl_idname)
 
 
 def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: bool) -> None:
@@ -109,14 +109,9 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
-        column = self.column()
-        row = column.row(align=True)
+        row = self.column().row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
-        column.prop(settings, "density_estimation", text="Density")
-        column.prop(settings, "first_camera_hits")
-        column.prop(settings, "first_photon_hits")
-        column.prop(settings, "use_splat_roulette")
 
 
 CLASSES = (

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Render settings, in a module for each subject."""
+
+from .acceleration import CUBEMAP_COSTS, AccelerationStructure, DensityEstimation, FirstCameraHits, FirstPhotonHits
+from .denoising import DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
+from .film import PixelFilter
+from .light_paths import MOST_SEGMENTS, DirectLight
+from .photons import MOST_PHOTONS
+from .render_settings import RenderSettings
+
+__all__ = [
+    "CUBEMAP_COSTS",
+    "MOST_PHOTONS",
+    "MOST_SEGMENTS",
+    "AccelerationStructure",
+    "DenoisingInputPasses",
+    "DenoisingPrefilter",
+    "DenoisingQuality",
+    "DensityEstimation",
+    "DirectLight",
+    "FirstCameraHits",
+    "FirstPhotonHits",
+    "PixelFilter",
+    "RenderSettings",
+]

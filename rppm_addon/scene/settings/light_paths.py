@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings of light paths: how long they are, and how light is estimated at their vertices."""
+
+import enum
+from dataclasses import dataclass
+
+from .group import SettingGroup
+from .setting_info import setting
+
+_MOST_BOUNCES = 1024
+MOST_SEGMENTS = 1024
+"""Most rays of a path: as many as a photon's record can tell apart."""
+_MOST_PASSED = 32
+"""Most segments through surfaces that a path does not see, such as objects hidden from the camera; no limit counts
+them."""
+
+
+class DirectLight(enum.Enum):
+    """How light that comes straight from a source is estimated; never both."""
+
+    RAYS = "RAYS"
+    PHOTONS = "PHOTONS"
+
+
+@dataclass
+class LightPathSettings(SettingGroup):
+    """Bounces of camera paths and photons, and the estimators at their vertices."""
+
+    max_bounces: int = setting(
+        32,
+        "Max Bounces",
+        "Most bounces of light on its way from what it lights first to the camera, as Cycles counts them: those of "
+        "photons, of the final gather and of camera rays together. 0 is direct light only",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    transparent_max_bounces: int = setting(
+        8,
+        "Transparent Max Bounces",
+        "Most transparent surfaces that light passes on its way to the camera, which are no bounces",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    """The name and the default are those of Cycles."""
+    camera_path_length: int = setting(
+        1 + _MOST_BOUNCES,
+        "Max Camera Bounces",
+        "Most bounces of camera rays and of the final gather, which Max Bounces limits as well; behind the last one "
+        "rays see what shines and nothing else",
+        property_name="max_camera_bounces",
+        property_offset=-1,
+        minimum=1,
+        maximum=1 + _MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    """d_eye: camera path segments that may leave importons, the primary ray being the first."""
+    photon_path_length: int = setting(
+        1 + _MOST_BOUNCES,
+        "Max Photon Bounces",
+        "Most bounces of photons off any surface, which Max Bounces limits as well",
+        property_name="max_photon_bounces",
+        property_offset=-1,
+        minimum=1,
+        maximum=1 + _MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    """d_photon: photon path segments, the first leaving the light; transparent surfaces do not count."""
+    specular_roughness: float = setting(
+        0.5,
+        "Specular Roughness",
+        "Surfaces up to this roughness, as their node shows it, are followed as mirrors and glass; rougher ones "
+        "gather photons",
+        minimum=0.0,
+        maximum=1.0,
+        unit="fraction",
+    )
+    """Roughness as users set it, not its square."""
+    direct_light: DirectLight = setting(
+        DirectLight.RAYS,
+        "Direct Light",
+        "How light that comes straight from a source is estimated",
+        choices={
+            DirectLight.RAYS: ("Rays", "Follow a ray to a light from each point: less noise"),
+            DirectLight.PHOTONS: (
+                "Photons",
+                "Use the photons that come straight from the lights, as the paper does",
+            ),
+        },
+    )
+    use_final_gather: bool = setting(
+        True,
+        "Final Gather",
+        "Look for light from other surfaces along one ray from each point, and take only direct light and caustics "
+        "from the photons there: fine noise in place of blotches, slower samples",
+    )
+
+    @property
+    def camera_bounces(self) -> int:
+        """Bounces of a camera path to the last vertex at which light is estimated."""
+        return min(self.max_bounces, self.camera_path_length - 1)
+
+    @property
+    def photon_bounces(self) -> int:
+        """Bounces of a photon to the last surface that stores it."""
+        return min(self.max_bounces, self.photon_path_length - 1)
+
+    @property
+    def camera_segments(self) -> int:
+        """Most rays of a camera path; the one behind the last bounce sees only emission."""
+        return min(self.camera_bounces + 2 + self.transparent_max_bounces + _MOST_PASSED, MOST_SEGMENTS)
+
+    @property
+    def photon_segments(self) -> int:
+        """Most rays of a photon path."""
+        return min(self.photon_bounces + 1 + self.transparent_max_bounces + _MOST_PASSED, MOST_SEGMENTS)
