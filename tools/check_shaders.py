@@ -77,8 +77,8 @@ LARGE = {
 }
 """Blocks whose buffers may be larger than a storage block (gl/buffers/buffers.py)."""
 BY_RANGES = {
-    ("geometry/gather.comp", "Triangles"),
-    ("geometry/gather.comp", "Attributes"),
+    ("surfaces/geometry/gather.comp", "Triangles"),
+    ("surfaces/geometry/gather.comp", "Attributes"),
     ("lights/mark.comp", "Triangles"),
 }
 """Which these programs are given a part of at a time."""

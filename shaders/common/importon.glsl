@@ -88,7 +88,7 @@ bool exceeds_depth(uint importon_history, uint photon_number) {
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
 }
 
-// What global photons count for: the disk's area over that of the surface in it (coverage/probe.comp).
+// What global photons count for: the disk's area over that of the surface in it (camera_paths/coverage/probe.comp).
 float photon_factor(uint gathers) { return float(max(gathers >> PHOTON_FACTOR_SHIFT, 1u)); }
 
 // Light that a photon adds to an importon, what of it is diffuse, and whether it came from the viewer's side.

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 restrict readonly buffer Camera;
 restrict writeonly buffer Inspections { vec4 inspections[]; };
-#include "gbuffer/panorama.glsl"
+#include "camera_paths/gbuffer/panorama.glsl"
 
 // Triangles listed in the leaf that a point lies in; those in several depth bins count as often.
 uint listed_at(vec3 point) {

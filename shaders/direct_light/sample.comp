@@ -29,8 +29,8 @@ writeonly buffer LightTriangles;
 writeonly buffer Contributions;
 readonly buffer Camera;
 readonly buffer RadiusFactors;
-#include "importons/radius.glsl"
-#include "importons/round_shapes.glsl"
+#include "camera_paths/importons/radius.glsl"
+#include "camera_paths/importons/round_shapes.glsl"
 writeonly buffer LightSplits;
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include "common/iteration.glsl"
 #include "common/invocation.glsl"
 uniform Parameters { FilmParameters parameters; };
-#include "splat_sums/read.glsl"
+#include "density_estimation/splat_sums/read.glsl"
 #include "common/luminance.glsl"
 readonly buffer Radiances;
 buffer Film;

@@ -15,13 +15,13 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "film/first_surface.glsl"
-#include "gbuffer/projections.glsl"
+#include "camera_paths/gbuffer/projections.glsl"
 readonly buffer Materials;
 #include "materials/medium.glsl"
 uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
 readonly buffer Camera;
-#include "gbuffer/sheared.glsl"
+#include "camera_paths/gbuffer/sheared.glsl"
 readonly buffer Closures;
 #include "common/bsdf/stored_lobes.glsl"
 #include "film/light_colors.glsl"

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #include <PassParameters>
 #include "common/active_paths.glsl"
 uniform Parameters { PassParameters parameters; };
-#include "light_passes/light_passes.glsl"
+#include "film/light_passes/light_passes.glsl"
 readonly buffer Importons;
 readonly buffer Radiances;
 

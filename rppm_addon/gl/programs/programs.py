@@ -258,8 +258,8 @@ def _quads_of(command: moderngl.Buffer) -> int:
 
 
 def _name(path: str) -> str:
-    """A program's, for people: resolve/resolve.comp is "resolve", light_tree/build.comp "light tree, build"."""
-    return ", ".join(dict.fromkeys(PurePosixPath(path).with_suffix("").parts)).replace("_", " ")
+    """A program's, for people: surfaces/resolve/resolve.comp is "resolve", film/film/passes.comp "film, passes"."""
+    return ", ".join(dict.fromkeys(PurePosixPath(path).with_suffix("").parts[-2:])).replace("_", " ")
 
 
 class ProgramMaker:

@@ -28,7 +28,7 @@ class Coverage:
             return
         with context.timers.stage("coverage"):
             acceleration = context.acceleration
-            program = self._library.compute("coverage/probe.comp", acceleration.traversal_defines)
+            program = self._library.compute("camera_paths/coverage/probe.comp", acceleration.traversal_defines)
             importons.active.run(
                 program,
                 {**context.blocks, **importons.lit_blocks},

@@ -71,8 +71,8 @@ class FinalGather(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._found_program = library.compute("final_gather/found.comp")
-        self._share_program = library.compute("final_gather/share.comp")
+        self._found_program = library.compute("camera_paths/final_gather/found.comp")
+        self._share_program = library.compute("camera_paths/final_gather/share.comp")
 
     def clear(self) -> None:
         """Forget what the band before found."""

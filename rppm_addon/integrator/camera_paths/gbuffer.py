@@ -67,8 +67,8 @@ class GBuffer(CameraHits):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         gl, size = context.moderngl, (sizes.width, sizes.bands[0].rows)
-        self._draw = library.draw("gbuffer/visibility.vert", "gbuffer/visibility.frag")
-        self._hits = library.compute("gbuffer/hits.comp")
+        self._draw = library.draw("camera_paths/gbuffer/visibility.vert", "camera_paths/gbuffer/visibility.frag")
+        self._hits = library.compute("camera_paths/gbuffer/hits.comp")
         self._visibility = self.own(gl.texture(size, 2, dtype="f4"), "visibility buffer")
         self._visibility.filter = (moderngl.NEAREST, moderngl.NEAREST)
         depth = self.own(gl.depth_texture(size), "visibility buffer")

@@ -47,7 +47,7 @@ class Importons(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._scatter = library.compute("importons/scatter.comp")
+        self._scatter = library.compute("camera_paths/importons/scatter.comp")
         self._lit_closures = self.exit_closures if sizes.has_subsurface else self.closures
         self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (band_pixels(sizes), 1)).tobytes()
 

@@ -22,7 +22,7 @@ class PrimaryRays(CameraHits):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._rays = library.compute("primary_rays/rays.comp")
+        self._rays = library.compute("camera_paths/primary_rays/rays.comp")
         self._is_on_raster = sizes.first_camera_hits is not None
 
     def raster(self, band: Band) -> CameraRaster | None:

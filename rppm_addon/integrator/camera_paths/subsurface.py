@@ -72,7 +72,7 @@ class Subsurface(Stage):
         self.is_used = sizes.has_subsurface
         if self.is_used:
             names = ("enter", "leave", "enter_photons", "leave_photons")
-            self._programs = {name: library.compute(f"subsurface/{name}.comp") for name in names}
+            self._programs = {name: library.compute(f"camera_paths/subsurface/{name}.comp") for name in names}
 
     def walk_camera_paths(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Fill the exit closures of the active camera paths, whose hits are resolved."""
@@ -115,7 +115,7 @@ class Subsurface(Stage):
             "first_path": band.first_pixel if band else 0,
         }
         enter, leave = (self._programs[name] for name in programs)
-        walk = self._library.compute("subsurface/walk.comp", context.acceleration.traversal_defines)
+        walk = self._library.compute("camera_paths/subsurface/walk.comp", context.acceleration.traversal_defines)
 
         active.run(enter, blocks, parameters)
         self._entered.take(active, self._rays.buffer)

@@ -37,7 +37,7 @@ class TexelHits(CameraHits):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._program = library.compute("texel_hits/hits.comp")
+        self._program = library.compute("camera_paths/texel_hits/hits.comp")
 
     def raster(self, band: Band) -> CameraRaster | None:
         """None: first hits lie on no raster."""

@@ -24,7 +24,7 @@ ACTIVE_PATHS_HEADER = Record(
 )
 """Header of a list of paths: their ``count``, and the ``groups`` of a dispatch over them.
 
-The header is laid out as a range of shaders/resolve/ranges.glsl, and ``first`` is the word where the numbers of the
+The header is laid out as a range of shaders/surfaces/resolve/ranges.glsl, and ``first`` is the word where the numbers of the
 paths begin. A list can therefore stand for the order of the hits where one program resolves them all.
 """
 StorageBlock("KeptPaths", "ActivePathsHeader kept; uint kept_paths[];")
@@ -49,8 +49,8 @@ class ActivePaths(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, name: str, remedy: str) -> None:
         super().__init__(context, library)
         self._context = context
-        self._fill = library.compute("active_paths/fill.comp")
-        self._keep = library.compute("active_paths/keep.comp")
+        self._fill = library.compute("common/active_paths/fill.comp")
+        self._keep = library.compute("common/active_paths/keep.comp")
         self._lists = [self.own(GrowingBuffer(context, name, remedy))]
         """The list, and where there is to be ``keep``, room for the next one."""
         self.most = 0
@@ -89,7 +89,7 @@ class ActivePaths(BufferSet):
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
 
     def begin(self, most: int) -> None:
-        """List none, for a program to list up to so many (shaders/active_paths/kept.glsl)."""
+        """List none, for a program to list up to so many (shaders/common/active_paths/kept.glsl)."""
         self.require(most)
         self.most = most
         self._begin(self._lists[0], 0, (0, 0, 1))

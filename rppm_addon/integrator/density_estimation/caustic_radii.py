@@ -42,7 +42,7 @@ class CausticRadii(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._program = library.compute("caustic_radii/narrow.comp")
+        self._program = library.compute("density_estimation/caustic_radii/narrow.comp")
 
     def factors(self, band: Band) -> moderngl.Buffer:
         """(pixels,) float32 of a band of the film."""

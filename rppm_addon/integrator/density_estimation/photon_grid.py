@@ -76,12 +76,12 @@ class PhotonGrid(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._count_photons = library.compute("photon_grid/count_photons.comp")
-        self._place_photons = library.compute("photon_grid/place_photons.comp")
-        self._count_importons = library.compute("photon_grid/count_importons.comp")
-        self._place_importons = library.compute("photon_grid/place_importons.comp")
-        self._allocate = library.compute("photon_grid/allocate.comp")
-        self._gather = library.compute("photon_grid/gather.comp")
+        self._count_photons = library.compute("density_estimation/photon_grid/count_photons.comp")
+        self._place_photons = library.compute("density_estimation/photon_grid/place_photons.comp")
+        self._count_importons = library.compute("density_estimation/photon_grid/count_importons.comp")
+        self._place_importons = library.compute("density_estimation/photon_grid/place_importons.comp")
+        self._allocate = library.compute("density_estimation/photon_grid/allocate.comp")
+        self._gather = library.compute("density_estimation/photon_grid/gather.comp")
         self._most_rounds = _MOST_ROUNDS if context.is_software else _NO_LIMIT
         self._parameters: dict[str, Any] = {}
 
@@ -114,7 +114,7 @@ class PhotonGrid(BufferSet):
         self._place_photons.run(photons.count, {**photons.blocks, **self.blocks, **cells}, parameters)
 
     def _side(self, radius: float) -> float:
-        """Return the side of cells for spheres up to a radius, meters. shaders/photon_grid/gather.comp makes the
+        """Return the side of cells for spheres up to a radius, meters. shaders/density_estimation/photon_grid/gather.comp makes the
         reach of these a little longer."""
         return 2.0 * (1.001 * radius + 2.0 * self._rounding)
 

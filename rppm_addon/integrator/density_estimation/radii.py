@@ -31,7 +31,7 @@ RADIUS_PARAMETERS = {
     "wide_radius": "float",
     "gathers_again_below": "float",
 }
-"""Members of IterationParameters: those of shaders/importons/radius.glsl; the largest radius for photons that diffuse
+"""Members of IterationParameters: those of shaders/camera_paths/importons/radius.glsl; the largest radius for photons that diffuse
 surfaces have scattered, meters; and the length below which a gathering ray does not end the search, meters."""
 
 

@@ -24,7 +24,7 @@ SUM_PARAMETERS = {
     "light_sums": "uint",
     "light_groups": "uint",
 }
-"""Parameters of programs that include shaders/splat_sums/roulette.glsl, add.glsl, collect.glsl or light.glsl."""
+"""Parameters of programs that include shaders/density_estimation/splat_sums/roulette.glsl, add.glsl, collect.glsl or light.glsl."""
 
 StorageBlock("SplatSums", "uint sum_words[];")
 StorageBlock("PhotonCounts", "uint photon_counts[];")
@@ -33,7 +33,7 @@ StorageBlock("GroupSums", "uint group_words[];")
 
 _PHOTON_QUANTA = 1 << 24
 _SUM_WORDS, _COUNT_WORDS = 12, 6
-"""Words of a pixel in SplatSums, and in PhotonCounts (shaders/splat_sums/sums.glsl)."""
+"""Words of a pixel in SplatSums, and in PhotonCounts (shaders/density_estimation/splat_sums/sums.glsl)."""
 _SCATTERED_SUMS, _CAUSTICS_SUMS = 6, 2
 
 
@@ -88,7 +88,7 @@ def radiance_quantum(photon_flux: float, radius: float) -> float:
 
 
 class SplatSums(BufferSet):
-    """The sums of a band's pixels (shaders/splat_sums/sums.glsl), and how many photons each of them took."""
+    """The sums of a band's pixels (shaders/density_estimation/splat_sums/sums.glsl), and how many photons each of them took."""
 
     remedy = "lower the resolution"
     _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes), block="SplatSums")

@@ -68,12 +68,16 @@ class Splatting(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         gl = context.moderngl
-        self._direct_jobs = library.compute("splatting/direct_jobs.comp")
-        self._direct_program = library.draw("splatting/quads.vert", "splatting/direct.frag")
-        self._insert = library.compute("splatting/insert.comp")
-        self._indirect_jobs = library.compute("splatting/indirect_jobs.comp")
-        self._indirect_program = library.draw("splatting/quads.vert", "splatting/indirect.frag")
-        self._core_program = library.compute("splatting/core.comp")
+        self._direct_jobs = library.compute("density_estimation/splatting/direct_jobs.comp")
+        self._direct_program = library.draw(
+            "density_estimation/splatting/quads.vert", "density_estimation/splatting/direct.frag"
+        )
+        self._insert = library.compute("density_estimation/splatting/insert.comp")
+        self._indirect_jobs = library.compute("density_estimation/splatting/indirect_jobs.comp")
+        self._indirect_program = library.draw(
+            "density_estimation/splatting/quads.vert", "density_estimation/splatting/indirect.frag"
+        )
+        self._core_program = library.compute("density_estimation/splatting/core.comp")
         self._resolution = _resolution(sizes)
         self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MOST_RASTER_PIXELS), sizes.bands[0].rows)))
         self._cube_size = (3 * self._resolution, 2 * self._resolution)

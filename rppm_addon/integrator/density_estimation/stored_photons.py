@@ -45,7 +45,7 @@ class PhotonList(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._program = library.compute("stored_photons/list.comp")
+        self._program = library.compute("density_estimation/stored_photons/list.comp")
         self.count = self.global_photon_count = self.indirect_count = 0
 
     @property

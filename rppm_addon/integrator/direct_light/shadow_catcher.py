@@ -40,7 +40,7 @@ class ShadowCatcher(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._program = library.compute("shadow_catcher/cast.comp") if sizes.has_catchers else None
+        self._program = library.compute("direct_light/shadow_catcher/cast.comp") if sizes.has_catchers else None
 
     def cast(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Fill ``lit`` for the resolved vertices of the active camera paths, before they scatter on."""

@@ -75,7 +75,7 @@ class Cryptomatte(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._layers = layers_of(sizes.passes)
-        self._program = library.compute("cryptomatte/cover.comp") if self._layers else None
+        self._program = library.compute("film/cryptomatte/cover.comp") if self._layers else None
         self._buffers = {
             OBJECTS: (self._objects, self._object_names),
             MATERIALS: (self._materials, self._material_names),

@@ -28,7 +28,7 @@ StorageBlock("SeenLight", "vec4 seen_light[];")
 _CHANNELS = 3
 _KINDS_OF_LIGHT = 2
 """Number of kinds of light of a group: light that a pixel has received, and light that its gathering ray has found
-(shaders/light_groups/grouped.glsl)."""
+(shaders/film/light_groups/grouped.glsl)."""
 
 
 def _grouped_values(sizes: StageSizes) -> int:
@@ -52,7 +52,7 @@ class LightGroups(Listener):
         self._programs: dict[str, ComputeProgram] = {}
         if self._groups:
             names = ("direct", "passed", "seen", "found", "accumulate")
-            self._programs = {name: library.compute(f"light_groups/{name}.comp") for name in names}
+            self._programs = {name: library.compute(f"film/light_groups/{name}.comp") for name in names}
 
     def clear(self) -> None:
         """Forget what the band before found."""

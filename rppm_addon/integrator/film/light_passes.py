@@ -74,7 +74,7 @@ class LightPasses(Listener):
         self._programs: dict[str, ComputeProgram] = {}
         if self._kept:
             names = ("direct", "found", "gathered", "photons")
-            self._programs = {name: library.compute(f"light_passes/{name}.comp") for name in names}
+            self._programs = {name: library.compute(f"film/light_passes/{name}.comp") for name in names}
 
     def clear(self) -> None:
         """Forget what the band before found."""

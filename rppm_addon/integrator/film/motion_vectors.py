@@ -50,7 +50,7 @@ class MotionVectors(BufferSet):
         super().__init__(context, library, sizes)
         self._context, self._library = context, library
         self.wanted = _is_wanted(sizes)
-        self._program = library.compute("motion_vectors/add.comp") if self.wanted else None
+        self._program = library.compute("film/motion_vectors/add.comp") if self.wanted else None
         self._uploaded: tuple[Shutter, list[Placement]] | None = None
         """Shutter and placements of the scene whose triangles are uploaded, or None."""
         self._cameras: tuple[Camera, Camera] | None = None

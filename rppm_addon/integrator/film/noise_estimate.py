@@ -82,8 +82,8 @@ class NoiseEstimate(Listener):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self.is_on = sizes.measures_noise
-        self._add = library.compute("noise_estimate/add.comp") if self.is_on else None
-        self._measure = library.compute("noise_estimate/measure.comp") if self.is_on else None
+        self._add = library.compute("film/noise_estimate/add.comp") if self.is_on else None
+        self._measure = library.compute("film/noise_estimate/measure.comp") if self.is_on else None
         self._width, self._columns = sizes.width, math.ceil(sizes.width / BLOCK)
 
     def band_ended(self, events: BandEvents) -> None:

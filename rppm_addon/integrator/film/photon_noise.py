@@ -47,8 +47,8 @@ class PhotonNoise(Listener):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._split = library.compute("photon_noise/split.comp")
-        self._join = library.compute("photon_noise/join.comp")
+        self._split = library.compute("film/photon_noise/split.comp")
+        self._join = library.compute("film/photon_noise/join.comp")
         self.step = sample_step(sizes.width, sizes.height)
         self.shape = math.ceil(sizes.height / self.step), math.ceil(sizes.width / self.step)
         """Rows and columns of the samples of all bands."""

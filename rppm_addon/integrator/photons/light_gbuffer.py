@@ -142,12 +142,12 @@ class LightGBuffer(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
-        self._list_jobs = library.compute("light_gbuffer/list_jobs.comp")
-        self._nearest = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/nearest.frag")
-        self._count = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/count.frag")
-        self._allocate = library.compute("light_gbuffer/allocate.comp")
-        self._list = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/list.frag")
-        self._first_hits = library.compute("light_gbuffer/first_hits.comp")
+        self._list_jobs = library.compute("photons/light_gbuffer/list_jobs.comp")
+        self._nearest = library.draw("photons/light_gbuffer/jobs.vert", "photons/light_gbuffer/nearest.frag")
+        self._count = library.draw("photons/light_gbuffer/jobs.vert", "photons/light_gbuffer/count.frag")
+        self._allocate = library.compute("photons/light_gbuffer/allocate.comp")
+        self._list = library.draw("photons/light_gbuffer/jobs.vert", "photons/light_gbuffer/list.frag")
+        self._first_hits = library.compute("photons/light_gbuffer/first_hits.comp")
         self._framebuffer: moderngl.Framebuffer | None = None
         self._parameters: dict[str, int] = {}
         self._side = 0

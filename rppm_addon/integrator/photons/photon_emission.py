@@ -16,8 +16,8 @@ class PhotonEmission:
     """Programs that place and direct photons, and end those that a soft light does not send to where they hit."""
 
     def __init__(self, library: ProgramLibrary) -> None:
-        self._emit = library.compute("photon_emission/emit.comp")
-        self._falloff = library.compute("photon_emission/falloff.comp")
+        self._emit = library.compute("photons/photon_emission/emit.comp")
+        self._falloff = library.compute("photons/photon_emission/falloff.comp")
         self._library = library
 
     def emit(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:
@@ -38,10 +38,10 @@ class PhotonEmission:
 
     def cut_soft_lights(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
         """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
-        program = self._library.compute("photon_emission/cut.comp", context.acceleration.traversal_defines)
+        program = self._library.compute("photons/photon_emission/cut.comp", context.acceleration.traversal_defines)
         active.run(program, {**context.blocks, **photons})
 
     def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
         """Where direct photons hit: mark those that came through a portal, whose light shadow rays bring."""
-        program = self._library.compute("photon_emission/portal_passed.comp", {"PORTALS": 1})
+        program = self._library.compute("photons/photon_emission/portal_passed.comp", {"PORTALS": 1})
         active.run(program, {**context.blocks, **photons})

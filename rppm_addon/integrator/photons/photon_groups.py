@@ -21,7 +21,7 @@ class PhotonGroups(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._find = library.compute("photon_groups/find.comp") if sizes.light_groups else None
+        self._find = library.compute("photons/photon_groups/find.comp") if sizes.light_groups else None
 
     def find(self, context: StageContext, rays: moderngl.Buffer, photons: int) -> None:
         """Take the groups of so many photons, whose rays (RAY) have just left the lights."""

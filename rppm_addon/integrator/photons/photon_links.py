@@ -28,8 +28,8 @@ class PhotonLinks(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._find = library.compute("photon_links/find.comp") if sizes.links_lights else None
-        self._link = library.compute("photon_links/link.comp") if sizes.links_lights else None
+        self._find = library.compute("photons/photon_links/find.comp") if sizes.links_lights else None
+        self._link = library.compute("photons/photon_links/link.comp") if sizes.links_lights else None
 
     def find(self, context: StageContext, rays: moderngl.Buffer, photons: int) -> None:
         """Take the links of so many photons, whose rays (RAY) have just left the lights."""

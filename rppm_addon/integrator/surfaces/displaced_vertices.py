@@ -38,7 +38,7 @@ Record(
     pixel_size="float",
 )
 
-_STAGE = "geometry/displace.comp"
+_STAGE = "surfaces/geometry/displace.comp"
 _AT_ONCE = 1 << 20
 """Vertices of a dispatch, whose buffers any device allows."""
 

@@ -143,7 +143,7 @@ class Placement:
 class Geometry(BufferSet):
     """World-space triangles of a scene in GPU buffers.
 
-    ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/geometry/gather.comp),
+    ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/surfaces/geometry/gather.comp),
     ``attributes`` a TriangleAttributes each;
     ``placements`` lists the instances that have triangles; ``matrices`` (n, 4, 4) are theirs, and ``boxes`` (n, 2, 3)
     what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
@@ -156,7 +156,7 @@ class Geometry(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
-        self._gather = library.compute("geometry/gather.comp")
+        self._gather = library.compute("surfaces/geometry/gather.comp")
         self._inputs = {
             name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy, texel_bytes=16))
             for name in ("Instances", "SlotMaterials", *_MESH_ARRAYS)

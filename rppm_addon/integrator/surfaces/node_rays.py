@@ -90,7 +90,7 @@ class NodeRays(BufferSet):
         asking for it and its first run. casts: also rays that begin anywhere, of which the program without knows
         nothing."""
         defines = {**traversal.traversal_defines, **({"RAYCASTS": 1} if casts else {})}
-        return self._library.compute("node_rays/trace.comp", defines)
+        return self._library.compute("surfaces/node_rays/trace.comp", defines)
 
     def trace(
         self,

@@ -27,7 +27,7 @@ from .node_rays import NodeRays
 from .surface_attributes import SurfaceAttributes
 
 StorageBlock("HitOrder", "uint hit_order[];")
-"""Numbers of hits by the program that evaluates their material (shaders/resolve/ranges.glsl)."""
+"""Numbers of hits by the program that evaluates their material (shaders/surfaces/resolve/ranges.glsl)."""
 StorageBlock("AovValues", "float aov_values[];")
 """Values that AOV Output nodes have written, for each path of a band."""
 
@@ -82,7 +82,7 @@ _RANGE_SIZE = 8
 """Words of a program's range of the hits."""
 Constants("Ranges", RANGE_SIZE=_RANGE_SIZE)
 Constants("PathKinds", PATH_OF=_PathKind)
-_STAGE = "resolve/resolve.comp"
+_STAGE = "surfaces/resolve/resolve.comp"
 ADJOINT_SEGMENT_OFFSET = 64
 """Number that is added to a segment for random numbers of hits that are seen from where photons go."""
 Constants("AdjointSegments", ADJOINT_SEGMENT_OFFSET=ADJOINT_SEGMENT_OFFSET)
@@ -108,9 +108,9 @@ class Resolve(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._library = library
-        self._count = library.compute("resolve/count.comp")
-        self._allocate = library.compute("resolve/allocate.comp")
-        self._order_hits = library.compute("resolve/order.comp")
+        self._count = library.compute("surfaces/resolve/count.comp")
+        self._allocate = library.compute("surfaces/resolve/allocate.comp")
+        self._order_hits = library.compute("surfaces/resolve/order.comp")
         self._programs: list[ComputeProgram] = []
         self._ray_counts: list[NodeRayCounts] = []
         self._ray_stride = 0

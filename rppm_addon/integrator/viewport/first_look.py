@@ -52,7 +52,7 @@ class FirstLook:
         gives a scene with the meshes that the mapper has in place of its own, as far as that is known; centered: gives
         a scene with the places that the mapper has."""
         self._context = context
-        self._draw = library.draw("first_look/first_look.vert", "first_look/first_look.frag")
+        self._draw = library.draw("viewport/first_look/first_look.vert", "viewport/first_look/first_look.frag")
         self._geometry = geometry
         self._displaced, self._centered = displaced, centered
         self._surfaces = GrowingBuffer(context, "plain surfaces")
@@ -105,7 +105,7 @@ class FirstLook:
         """The nearest surfaces of a scene that take() returned, transparent ones too.
 
         framebuffer: of three float textures: color, premultiplied; normal and view depth, meters; numbers of instance
-        and material, 0 where there is no surface (shaders/first_look/first_look.frag).
+        and material, 0 where there is no surface (shaders/viewport/first_look/first_look.frag).
         camera: CAMERA_VIEW.
         """
         framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)

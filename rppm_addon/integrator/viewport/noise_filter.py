@@ -77,9 +77,9 @@ class NoiseFilter(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._prepare = library.compute("noise_filter/prepare.comp")
-        self._smooth = library.compute("noise_filter/smooth.comp")
-        self._despeckle = library.compute("noise_filter/despeckle.comp")
+        self._prepare = library.compute("viewport/noise_filter/prepare.comp")
+        self._smooth = library.compute("viewport/noise_filter/smooth.comp")
+        self._despeckle = library.compute("viewport/noise_filter/despeckle.comp")
         size, gl = (sizes.width, sizes.height), context.moderngl
         self.size = size
         self._images = [self.own(gl.texture(size, 4, dtype="f4"), _IMAGES) for _ in range(2)]

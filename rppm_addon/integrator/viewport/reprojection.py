@@ -145,7 +145,7 @@ class Reprojection:
     def __init__(self, context: Context, library: ProgramLibrary, first_look: FirstLook) -> None:
         self._context = context
         self._library = library
-        self._compose = library.compute("reprojection/compose.comp")
+        self._compose = library.compute("viewport/reprojection/compose.comp")
         self._first_look = first_look
         self._last: SeenPicture | None = None
         self._next: SeenPicture | None = None

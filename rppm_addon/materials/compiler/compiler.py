@@ -193,9 +193,7 @@ class _Compiler:
         if not written:
             return ""
         lines = "".join(f"    {line}\n" for line in in_pieces([*scope.lines, *written]))
-        return (
-            f'#include "resolve/aovs.glsl"\nvoid evaluate_aovs(Surface surface, uint first, uint path) {{\n{lines}}}\n'
-        )
+        return f'#include "surfaces/resolve/aovs.glsl"\nvoid evaluate_aovs(Surface surface, uint first, uint path) {{\n{lines}}}\n'
 
     def _aov_value(self, scope: _Scope, output: AovOutput, entry: RenderPass) -> str:
         """GLSL for what a node writes: a color, or a value."""

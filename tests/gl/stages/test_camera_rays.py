@@ -37,7 +37,7 @@ def traced_rays(context, library, camera, iteration=1, seed=0):
     view = gl.buffer(camera_view(camera, 0, height, (0.0, 0.0)).tobytes())
     rays, paths = gl.buffer(reserve=RAY.size * width * height), gl.buffer(reserve=CAMERA_PATH.size * width * height)
     block = iteration_buffer(context, number=iteration + 1, seed=seed)
-    library.compute("primary_rays/rays.comp").run(
+    library.compute("camera_paths/primary_rays/rays.comp").run(
         width * height,
         {"Camera": view, "Rays": rays, "CameraPaths": paths, "Iteration": block},
         {"first_pixel": 0},
@@ -339,7 +339,7 @@ def test_outside_of_a_fisheye_is_black(renderer):
 
 
 def test_records_agree_with_the_shader():
-    source = expand("gbuffer/projections.glsl").text
+    source = expand("camera_paths/gbuffer/projections.glsl").text
     for index, kind in enumerate(PanoramaKind):
         assert f"PROJECTION_{kind.name} = {index + 2}u" in source
     assert CAMERA_VIEW.size % 16 == 0

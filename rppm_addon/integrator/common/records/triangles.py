@@ -20,4 +20,4 @@ TRIANGLE_ATTRIBUTES = Record(
 StorageBlock("Attributes", "TriangleAttributes attributes[];")
 TRIANGLE_VERTICES = Record("TriangleVertices", vertex0="vec4", vertex1="vec4", vertex2="vec4")
 StorageBlock("Triangles", "vec4 triangle_vertices[];")
-"""Three a triangle; for the fourth components see shaders/geometry/gather.comp."""
+"""Three a triangle; for the fourth components see shaders/surfaces/geometry/gather.comp."""

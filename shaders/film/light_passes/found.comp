@@ -1,0 +1,31 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of what gathering rays found: of the world, that nothing but transparency lay in the way of; and caustics.
+
+layout(local_size_x = 64) in;
+
+#include <LightPassParameters>
+#include "common/invocation.glsl"
+#include "common/bsdf/microfacet.glsl"
+#include "common/gathering.glsl"
+#include "common/path_history.glsl"
+uniform Parameters { LightPassParameters parameters; };
+readonly buffer GatheringVertices;
+readonly buffer Importons;
+readonly buffer LightSums;
+#include "film/light_passes/read_light_sum.glsl"
+writeonly buffer FoundDirect { vec4 found_direct[]; };
+buffer FoundCaustics;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
+    vec3 world = gathering_vertices[index].found;
+    uint history = departing_history(importons[index].history);
+    if (parameters.scattered != 0u)
+        found_direct[index] = vec4((history & HISTORY_AGAIN) == 0u ? world : vec3(0.0), 0.0);
+    if (parameters.caustics == 0u) return;
+    vec3 caustic = read_light_sum(index, FINAL_GATHER_CAUSTICS, parameters.light_sums) * parameters.quantum;
+    if ((history & HISTORY_CAUSTIC) != 0u) caustic += world;
+    found_caustics[index].rgb += caustic;
+}

@@ -1,0 +1,27 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What pixels took of a part of what their gathering rays and those of their neighbors found, for the passes of light.
+
+layout(local_size_x = 64) in;
+
+#include <LightPassParameters>
+#include <GatherParts>
+#include "common/invocation.glsl"
+uniform Parameters { LightPassParameters parameters; };
+#include "film/light_passes/light_passes.glsl"
+readonly buffer GatheringVertices;
+readonly buffer Importons;
+readonly buffer Radiances;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
+    uint first = first_scatter(departing_history(importons[index].history));
+    vec3 light = radiances[index].rgb;
+    if (parameters.part == GATHER_PART_CAUSTICS) add_to_pass(PASS_CAUSTICS, index, light);
+    else if (parameters.part == GATHER_PART_ALL) add_scattered_light(first, true, index, light);
+    else {
+        add_scattered_light(first, false, index, light);
+        add_scattered_light(first, true, index, -light);
+    }
+}

@@ -1,9 +1,0 @@
-#version 430 core
-// SPDX-License-Identifier: GPL-3.0-or-later
-// How many triangles of each texel begin before its horizon.
-#include "light_gbuffer/fragment.glsl"
-
-void main() {
-    TexelFragment found = texel_fragment();
-    if (before_horizon(found)) atomicAdd(light_texels[found.texel].count, 1u);
-}

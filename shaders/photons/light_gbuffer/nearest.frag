@@ -1,0 +1,12 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the first triangle of each texel ends: the greater complement is the nearer depth, and 0 is none.
+#include "photons/light_gbuffer/fragment.glsl"
+
+void main() {
+    TexelFragment found = texel_fragment();
+    if (!found.seen) return;
+    uint complement = ~floatBitsToUint(found.depths.y);
+    if (light_texels[found.texel].depth_complement < complement)
+        atomicMax(light_texels[found.texel].depth_complement, complement);
+}
