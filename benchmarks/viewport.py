@@ -33,8 +33,10 @@ from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
+from rppm_addon.session.process.frames import FrameReader
 from rppm_addon.session.process.known_programs import KnownPrograms
-from rppm_addon.session.process.viewport_renderer import ViewportRenderer, shown_picture
+from rppm_addon.session.process.viewport_presenter import film_picture
+from rppm_addon.session.process.viewport_renderer import ViewportRenderer
 
 from . import ROOT
 from .machine import Clock, describe
@@ -87,17 +89,21 @@ class Window:
         self._programs = KnownPrograms()
         self._context, self._library = context, library
         self.pictures: list[tuple[float, int, np.ndarray]] = []
-        """When, of which view, and what."""
+        """Time, generation and pixels of each frame."""
+        self.rendered = 0
+        """Number of frames that were rendered, and not reprojected."""
+        self._reader: FrameReader | None = None
         self.viewing = self._open()
 
     def _open(self) -> ViewportRenderer:
         return ViewportRenderer(self._context, self._library, Denoiser([]), self._take, self._programs)
 
     def _take(self, kind: str, **content: object) -> None:
-        if kind == "frame":
-            width, height = content["width"], content["height"]
-            pixels = self.viewing._frames._slots.pixels[content["slot"]][: 4 * width * height]
-            self.pictures.append((self._clock.now(), content["generation"], pixels.reshape(height, width, 4).copy()))
+        if kind == "slots":
+            self._reader = FrameReader(**content)
+        elif kind == "frame":
+            self.rendered += content.pop("progress") > 0.0
+            self.pictures.append((self._clock.now(), content["generation"], self._reader.read(**content)))
 
     def reopen(self) -> None:
         """Begin as a viewport that has shown nothing."""
@@ -129,18 +135,18 @@ def rppm_pictures(window: Window, clock: Clock, scene: Scene, marks: list[float]
     viewing.show(scene, 1, False)
     for mark in marks:
         window.run(mark - (clock.now() - started))
-        mapper = viewing._mapper
+        mapper = viewing.mapper
         samples = mapper.iteration if mapper.film.width == size[0] else 0
         yield {
             "shown": in_frame(window.pictures[-1][2], size),
-            "noisy": in_frame(shown_picture(mapper.film, scene), size),
+            "noisy": in_frame(film_picture(mapper.film, scene), size),
             "samples": samples,
         }
 
 
 def orbit(window: Window, scene: Scene) -> dict[str, float]:
     """Pictures a second while the view turns about the world's axis."""
-    before, state = len(window.pictures), {"view": 1, "rendered": 0}
+    before, rendered, state = len(window.pictures), window.rendered, {"view": 1}
     viewing = window.viewing
 
     def turn(passed: float) -> None:
@@ -154,16 +160,9 @@ def orbit(window: Window, scene: Scene) -> dict[str, float]:
         camera = dataclasses.replace(scene.camera, matrix=matrix @ scene.camera.matrix)
         viewing.show(dataclasses.replace(scene, camera=camera), view, True)
 
-    give_out = viewing._give_out
-
-    def counted(*arguments: object) -> None:
-        state["rendered"] += 1
-        give_out(*arguments)
-
-    viewing._give_out = counted
     window.run(ORBIT_SECONDS, turn)
     shown = window.pictures[before:]
-    return {"shown": len(shown) / ORBIT_SECONDS, "rendered": state["rendered"] / ORBIT_SECONDS}
+    return {"shown": len(shown) / ORBIT_SECONDS, "rendered": (window.rendered - rendered) / ORBIT_SECONDS}
 
 
 def cycles_picture(samples: int, size: tuple[int, int], seed: int) -> np.ndarray:

@@ -15,7 +15,7 @@ from .progress_bar import PartBar, ProgressBar
 from .recorder import RenderRecorder, RenderRequest
 
 if TYPE_CHECKING:
-    from ..session.renderer import Frame, Progress, RenderResult
+    from ..session.results import Frame, Progress, RenderResult
 
 _UNFIT_FOR_FILES = re.compile(r"[^\w-]+")
 

@@ -18,7 +18,7 @@ from .picture_files import write_png
 from .progress_bar import PartBar, ProgressBar
 
 if TYPE_CHECKING:
-    from ..session.renderer import Frame, Progress, RenderResult
+    from ..session.results import Frame, Progress, RenderResult
 
 _NO_ITERATION_LIMIT = 1 << 30
 _LEAST_TIME_LIMIT = 1e-3
@@ -194,7 +194,11 @@ class RenderRecorder(RenderObserver):
         """Metadata of the EXR of a finished render."""
         statistics = self.result.statistics
         return picture_metadata(
-            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_meters
+            statistics.iterations,
+            statistics.photons,
+            self.seconds,
+            statistics.device,
+            statistics.photon_statistics.radius_meters,
         )
 
     def report(self) -> dict[str, object]:

@@ -3,12 +3,13 @@
 
 import logging
 import time
+from collections.abc import Callable
 
 from ..denoising.denoiser import Denoiser
 from ..scene.errors import DenoiserError
 from ..scene.passes import NOISY_IMAGE
 from ..scene.settings import RenderSettings
-from .results import Frame, RenderResult
+from .results import Frame, Progress, RenderResult
 
 log = logging.getLogger(__name__)
 
@@ -60,3 +61,32 @@ def finished_result(result: RenderResult, settings: RenderSettings, denoiser: De
     statistics.seconds += seconds
     statistics.stage_seconds = {**statistics.stage_seconds, "denoising": seconds}
     return RenderResult(frame, statistics, result.stopped)
+
+
+class FinishedPictures:
+    """Callbacks of a render's caller, who receives pictures with the passes that the settings name."""
+
+    def __init__(
+        self,
+        settings: RenderSettings,
+        denoiser: Denoiser,
+        on_progress: Callable[[Progress, Callable[[], Frame]], None] | None,
+        on_snapshot: Callable[[float, Frame], None] | None,
+    ) -> None:
+        """on_progress, on_snapshot: as Renderer.render takes them."""
+        self._settings = settings
+        self._denoiser = denoiser
+        self._on_progress = on_progress
+        self._on_snapshot = on_snapshot
+        self._warnings: list[str] = []
+        """Warnings of snapshots, each logged once."""
+
+    def report(self, progress: Progress, read_frame: Callable[[], Frame]) -> None:
+        """Pass the progress on, with a function that returns the noisy picture so far."""
+        if self._on_progress is not None:
+            self._on_progress(progress, lambda: wanted_frame(read_frame(), self._settings))
+
+    def take_snapshot(self, seconds: float, frame: Frame) -> None:
+        """Pass a frame of the film on, denoised where the settings ask for it."""
+        if self._on_snapshot is not None:
+            self._on_snapshot(seconds, finished_frame(frame, self._settings, self._denoiser, self._warnings))

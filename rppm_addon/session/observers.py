@@ -29,7 +29,7 @@ from ..scene import Scene
 
 if TYPE_CHECKING:
     from .continuation import Continuation
-    from .renderer import Frame, Progress, RenderResult
+    from .results import Frame, Progress, RenderResult
 
 
 class RenderObserver:

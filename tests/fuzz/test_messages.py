@@ -28,7 +28,7 @@ from rppm_addon.session.process.protocol import (
 )
 from rppm_addon.session.process.received import received
 from rppm_addon.session.process.sessions import SessionStatus
-from rppm_addon.session.results import Progress, RenderStatistics
+from rppm_addon.session.results import PhotonStatistics, Progress, RenderStatistics
 
 _ARRAYS = [np.arange(12, dtype=np.float32).reshape(3, 4), np.zeros(3, np.uint8), np.zeros((0, 3))]
 _PACKED, _ = pack(_ARRAYS)
@@ -94,9 +94,13 @@ def test_records(data):
     good = data.draw(
         st.sampled_from(
             [
-                SessionStatus(source_watts={"Lamp": 5.0}, warnings=["w"]),
+                SessionStatus(
+                    progress=Progress(1, 2, 3.0, 4),
+                    photon_statistics=PhotonStatistics(0.1, source_watts={"Lamp": 5.0}),
+                    warnings=["w"],
+                ),
                 Progress(1, 2, 3.0, 4),
-                RenderStatistics(1, 2, 3.0, 4.0, "d", 5, 0.1, stage_seconds={"a": 1.0}),
+                RenderStatistics(1, 2, 3.0, 4.0, "d", 5, PhotonStatistics(0.1), stage_seconds={"a": 1.0}),
             ]
         )
     )

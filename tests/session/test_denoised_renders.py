@@ -136,7 +136,7 @@ def test_in_the_renderers_process(renderer, start):
     scene = floor(denoising_input_passes="RGB")
     here = renderer.render(scene).frame
     process = start()
-    process.denoisers = PLACES
+    process.launcher.denoisers = PLACES
     found = RemoteRenderer(process, SessionKind.FINAL).render(scene, RenderJob())
     np.testing.assert_array_equal(found.frame.combined, here.combined)
     np.testing.assert_array_equal(found.frame.passes["Noisy Image"], here.passes["Noisy Image"])

@@ -11,12 +11,13 @@ import pytest
 from rppm_addon.gl.driver_errors import OUT_OF_MEMORY, DriverErrors
 from rppm_addon.gl.losses import LossWatch
 from rppm_addon.scene.errors import DeviceLostError
-from rppm_addon.session import renderer as renderer_module
+from rppm_addon.session import checkpoint_schedule
+from rppm_addon.session.continuation import MOST_LOSSES
 from rppm_addon.session.process.client import ProcessState
 from rppm_addon.session.process.remote_rendering import RemoteRenderer
 from rppm_addon.session.process.sessions import SessionKind
 from rppm_addon.session.render_job import RenderJob
-from rppm_addon.session.renderer import MOST_LOSSES, Renderer
+from rppm_addon.session.renderer import Renderer
 
 from .conftest import children, scene_of, wait_until
 
@@ -29,9 +30,9 @@ class Losses:
     def __init__(self, monkeypatch):
         self.due = False
         monkeypatch.setattr(LossWatch, "check", self._check)
-        monkeypatch.setattr(renderer_module, "FIRST_SAFEGUARD_SECONDS", 0.0)
-        monkeypatch.setattr(renderer_module, "SAFEGUARD_SECONDS", 0.0)
-        monkeypatch.setattr(renderer_module, "SAFEGUARD_MOST_TIME", 1e6)
+        monkeypatch.setattr(checkpoint_schedule, "FIRST_SAFEGUARD_SECONDS", 0.0)
+        monkeypatch.setattr(checkpoint_schedule, "SAFEGUARD_SECONDS", 0.0)
+        monkeypatch.setattr(checkpoint_schedule, "SAFEGUARD_MOST_TIME", 1e6)
 
     def _check(self):
         if self.due:

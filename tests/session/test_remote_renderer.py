@@ -87,7 +87,7 @@ def test_who_is_stopped_does_not_stop_the_next(remote, scene, pictures):
     assert result.stopped and 2 <= result.statistics.iterations < 100000
     shows(remote, scene, 0.3, pictures)
     # Told too late: the render it was meant for has ended.
-    remote._idle.want_picture()
+    remote._idle.request_picture()
     remote._idle.stop()
     shows(remote, scene, 0.6, pictures)
     # Before there was anything to see, nobody waits for the process.

@@ -69,8 +69,9 @@ def test_a_viewport_settles_on_the_picture_of_a_render(start):
     wait_until(lambda: session.status.settled)
     assert np.array_equal(session.newest().combined, expected(scene).combined)
     status = session.status
-    assert (status.generation, status.iteration, status.iterations, status.error) == (1, 3, 3, "")
-    assert status.photons == 3 * scene.settings.photons and status.memory_bytes > 0 and status.radius_meters > 0.0
+    assert (status.generation, status.iteration, status.progress.iterations, status.error) == (1, 3, 3, "")
+    assert status.progress.photons == 3 * scene.settings.photons and status.progress.memory_bytes > 0
+    assert status.photon_statistics.radius_meters > 0.0
     assert process.device.name and float(process.device.version) >= 4.3
     darker = dataclasses.replace(scene, exposure=0.5)
     session.show(darker, 2, False)
@@ -377,7 +378,7 @@ def test_messages_for_a_session_that_was_closed(start):
         viewport, final = process.open(SessionKind.VIEWPORT), process.open(SessionKind.FINAL)
         viewport.show(scene_of(), 1, False)
         final.show(scene_of(size=200), 1, False)
-        final.want_picture()
+        final.request_picture()
         wait_until(viewport.newest)
         viewport.close()
         final.close()
@@ -396,7 +397,7 @@ def test_messages_for_a_session_that_was_closed(start):
 
 def test_a_log_that_cannot_be_written(start):
     process = start()
-    process.log_path = Path("/proc/renderer/renderer.log")
+    process.launcher.log_path = Path("/proc/renderer/renderer.log")
     session = process.open(SessionKind.VIEWPORT)
     session.show(scene_of(), 1, False)
     frame_of(session, 1)

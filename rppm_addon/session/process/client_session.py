@@ -219,16 +219,16 @@ class RenderSession(Session):
             self._snapshots = seconds
             self.process.post("expect_snapshots", session=self.number, seconds=seconds)
 
-    def keep_still(self, checkpoint: Path | None) -> None:
+    def set_checkpoint(self, checkpoint: Path | None) -> None:
         """Have the scene go on from a checkpoint and be kept in it; to be said before a scene begins."""
         with self.process.changed:
             self._checkpoint = str(checkpoint or "")
-            self.process.post("keep_still", session=self.number, path=self._checkpoint)
+            self.process.post("set_checkpoint", session=self.number, path=self._checkpoint)
 
-    def want_picture(self) -> None:
+    def request_picture(self) -> None:
         """Ask for the picture so far."""
         with self.process.changed:
-            self.process.post("want_picture", session=self.number)
+            self.process.post("request_picture", session=self.number)
 
     def stop(self) -> None:
         """Have the render end with what it has."""
@@ -242,7 +242,7 @@ class RenderSession(Session):
         super().introduce()
         self.introduced = True
         self.process.post("expect_snapshots", session=self.number, seconds=self._snapshots)
-        self.process.post("keep_still", session=self.number, path=self._checkpoint)
+        self.process.post("set_checkpoint", session=self.number, path=self._checkpoint)
         self._hand_on()
         if self._stopping:
             self.process.post("stop", session=self.number, generation=self._generation)
@@ -256,7 +256,7 @@ class RenderSession(Session):
             content, self._given = self._kept.message(self.process.error)
         except OSError:  # there is no memory: it begins again
             return
-        self.process.post("go_on", session=self.number, **content)
+        self.process.post("resume", session=self.number, **content)
 
     def snapshot_taken(self, number: int) -> None:
         """As Session has it; what was handed on before is read as well."""

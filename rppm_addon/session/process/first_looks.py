@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """First looks at the scenes of a session, until the renderer has a picture of its own."""
 
+import logging
 import math
 
 import numpy as np
@@ -13,8 +14,9 @@ from ...integrator.pilot_view import enlarged
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
-from ..renderer import log
 from .resolution_scaler import at_level
+
+log = logging.getLogger(__name__)
 
 MOST_PIXELS = 1 << 22
 """Pixels that a first look is drawn with at most. A larger picture is enlarged from it: the memory on the device is not

@@ -25,7 +25,7 @@ class KeptRender:
     """Seconds that the render has taken so far."""
 
     def message(self, reason: str) -> tuple[dict[str, Any], SharedBlock | None]:
-        """The content of "go_on", and the block that is to be kept until it is read. Raises OSError without memory.
+        """The content of "resume", and the block that is to be kept until it is read. Raises OSError without memory.
 
         reason: why the process ended.
         """

@@ -11,7 +11,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any, BinaryIO, TypeAlias
 
-VERSION = 6
+VERSION = 7
 LONGEST_MESSAGE = 1 << 28
 _Fields: TypeAlias = dict[str, Any]
 """Types, or tuples of types, of what a message has beside its kind."""
@@ -32,11 +32,11 @@ TO_CHILD: dict[str, _Fields] = {
     # A render is to send its picture at these times.
     "expect_snapshots": _SESSION | {"seconds": list},
     # Renders go on from this checkpoint and are kept in it; "" is none.
-    "keep_still": _SESSION | {"path": str},
+    "set_checkpoint": _SESSION | {"path": str},
     # The render of the next scene goes on where one stood that a process kept which has ended for this reason.
-    "go_on": _SESSION | _PACKED | {"seconds": (float, int), "reason": str},
+    "resume": _SESSION | _PACKED | {"seconds": (float, int), "reason": str},
     # A render is to send its picture once.
-    "want_picture": _SESSION,
+    "request_picture": _SESSION,
     # The render's oldest frame is copied: its shared memory is free.
     "received": _SESSION,
     # The render of a scene is to end with what it has.

@@ -82,7 +82,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
     def begin() -> None:
         job.on_start()
         session.expect_snapshots(tuple(job.snapshots))
-        session.keep_still(job.checkpoint)
+        session.set_checkpoint(job.checkpoint)
         session.begin(scene)
 
     shown = session.introduced
@@ -105,7 +105,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             begin()
         elif event == "progress":
             if job.on_progress(content["progress"]):
-                session.want_picture()
+                session.request_picture()
         elif event == "picture":
             job.on_frame(content["progress"], _frame(content, scene))
         elif event == "snapshot":

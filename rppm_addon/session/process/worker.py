@@ -31,7 +31,7 @@ from .viewport_renderer import ViewportRenderer
 log = logging.getLogger(__name__)
 
 _FOR_SESSIONS = frozenset(
-    ("show", "pause", "expect_snapshots", "keep_still", "go_on", "want_picture", "received", "stop")
+    ("show", "pause", "expect_snapshots", "set_checkpoint", "resume", "request_picture", "received", "stop")
 )
 LEAVE_SECONDS = 1.0
 """How long what the device is at may take to end once Blender has left."""
@@ -132,7 +132,7 @@ class Worker:
                 session.expect(message["scene"], message["generation"])
             self._send("taken", session=message["session"], number=message.pop("number"))
             self._whole.set()
-        elif kind == "go_on":
+        elif kind == "resume":
             message["pause"] = pause_of(message.pop("document"), unpack(message.pop("arrays")))
         self._receiver.forget(message.pop("dead", ()))
 

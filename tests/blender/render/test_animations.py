@@ -15,8 +15,8 @@ from rppm_addon.gl.context import Context
 from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
+from rppm_addon.session.frame_reading import read_frame
 from rppm_addon.session.observers import RenderObserver, observing
-from rppm_addon.session.renderer import read_frame
 from rppm_addon.session.results import Frame
 
 ITERATIONS = 3

@@ -92,6 +92,7 @@ class Process:
     def __init__(self):
         self.state, self.error, self.device, self.log_path = ProcessState.RUNNING, "", None, Path("renderer.log")
         self.restarted = 0
+        self.launcher = SimpleNamespace(denoisers=[])
 
     def restart(self):
         self.restarted += 1
@@ -116,7 +117,7 @@ def test_another_library_starts_the_process_anew(monkeypatch):
     process = Process()
     monkeypatch.setattr(renderer_process, "_process", process)
     renderer_process.libraries_changed()
-    assert process.denoisers == denoising_libraries() and process.restarted == 1
+    assert process.launcher.denoisers == denoising_libraries() and process.restarted == 1
     process.state = ProcessState.STOPPED
     renderer_process.libraries_changed()
     assert process.restarted == 1

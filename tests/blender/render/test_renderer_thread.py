@@ -9,7 +9,7 @@ import pytest
 from rppm_addon.blender.renderer_thread import RendererThread, RenderJob
 from rppm_addon.scene import Camera, Scene
 from rppm_addon.session import renderer as session_renderer
-from rppm_addon.session.renderer import Progress
+from rppm_addon.session.results import Progress
 
 
 class FakeRenderer:
