@@ -32,14 +32,14 @@ def denoised_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser) -
 
 
 def noisy_frame(frame: Frame, settings: RenderSettings) -> Frame:
-    """The same where denoising fails, or is not waited for."""
+    """Return a frame as denoised_frame does, but noisy: denoising has failed or is not waited for."""
     wanted = wanted_frame(frame, settings)
     noisy = {NOISY_IMAGE.name: frame.combined} if settings.use_denoising else {}
     return Frame(wanted.combined, {**wanted.passes, **noisy})
 
 
 def finished_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser, warnings: list[str]) -> Frame:
-    """denoised_frame, or where it fails noisy_frame, and a line more in ``warnings``."""
+    """Return the denoised frame, or where that fails the noisy one and a line more in ``warnings``."""
     try:
         return denoised_frame(frame, settings, denoiser)
     except DenoiserError as error:
@@ -51,8 +51,8 @@ def finished_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser, w
 
 
 def finished_result(result: RenderResult, settings: RenderSettings, denoiser: Denoiser) -> RenderResult:
-    """A result whose frame is the film's, with its finished frame. One that was stopped is not denoised: whoever stops
-    a render does not want to wait."""
+    """Return a result with its frame finished. The picture of a render that was stopped is not denoised, which would
+    make its user wait."""
     if result.stopped or not settings.use_denoising:
         return RenderResult(noisy_frame(result.frame, settings), result.statistics, result.stopped)
     start, statistics = time.perf_counter(), result.statistics

@@ -23,7 +23,7 @@ third of an iteration."""
 
 
 class RenderLoop:
-    """One render, in slices that take the device a bounded time each, so that it can be shared and stopped."""
+    """One render in slices of bounded time, between which other sessions render and it can be stopped."""
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class RenderLoop:
     ) -> None:
         """Start the clock; nothing is rendered yet. The arguments after the scene are those of Renderer.render.
 
-        Members that the scene shares with the one that the mapper rendered before are neither uploaded nor built.
+        Members of the scene that the mapper rendered before are neither uploaded nor built again.
         """
         self._context = context
         self._mapper = mapper

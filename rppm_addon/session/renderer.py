@@ -61,7 +61,7 @@ class Renderer:
     ) -> RenderResult:
         """Render a scene to its settings' iterations or time limit, whichever comes first.
 
-        Members that the scene shares with the one before stay on the device, so nobody may change members of scenes.
+        Members of the scene before stay on the device, so members of scenes must not be changed.
         Where the device is lost, the render continues in another context after the last state that it handed over.
         Raises the errors of scene/errors.py.
 
@@ -72,7 +72,7 @@ class Renderer:
             should_stop: called as often. One iteration is done in any case, so that there is a picture.
             snapshots: ascending seconds since the call.
             on_snapshot: receives each of ``snapshots`` and the picture at that time.
-            continuation: where the render begins, and who keeps its state.
+            continuation: where the render begins, and who receives its state.
         """
         recovery = DeviceLossRecovery(continuation)
         pictures = FinishedPictures(scene.settings, self._denoiser, on_progress, on_snapshot)

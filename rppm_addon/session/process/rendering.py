@@ -29,7 +29,7 @@ log = logging.getLogger(__name__)
 class Rendering:
     """Renders each scene that Blender sends, slice by slice, and sends its progress, pictures and result.
 
-    Members that the next scene shares with the last one stay on the device.
+    Members that the next scene has in common with the last one stay on the device.
     """
 
     def __init__(

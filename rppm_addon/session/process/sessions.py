@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kinds and status of sessions in the renderer's process, which both sides know."""
+"""Kinds and status of sessions in the renderer's process, for both sides of the connection."""
 
 import enum
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from ..results import PhotonStatistics, Progress
 
 
 class SessionKind(enum.Enum):
-    """Purpose of a session; the value is its weight when several share the device."""
+    """Purpose of a session; the value is its weight when several render at once."""
 
     PREPARATION = 0.25
     VIEWPORT = 1
