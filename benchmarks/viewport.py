@@ -93,7 +93,7 @@ class Window:
         self.rendered = 0
         """Number of frames that were rendered, and not reprojected."""
         self._reader: FrameReader | None = None
-        self.viewing = self._open()
+        self.renderer = self._open()
 
     def _open(self) -> ViewportRenderer:
         return ViewportRenderer(self._context, self._library, Denoiser([]), self._take, self._programs)
@@ -107,17 +107,17 @@ class Window:
 
     def reopen(self) -> None:
         """Begin as a viewport that has shown nothing."""
-        self.viewing.release()
-        self.viewing, self.pictures = self._open(), []
+        self.renderer.release()
+        self.renderer, self.pictures = self._open(), []
 
     def run(self, seconds: float, during: Callable[[float], None] = lambda _: None) -> None:
         """Go on for so long, or until all is rendered."""
         started = self._clock.now()
         while (passed := self._clock.now() - started) < seconds:
             during(passed)
-            if not self.viewing.busy:
+            if not self.renderer.busy:
                 break
-            self.viewing.run_slice()
+            self.renderer.run_slice()
             self._context.finish()
 
 
@@ -131,11 +131,11 @@ def in_frame(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
 
 def rppm_pictures(window: Window, clock: Clock, scene: Scene, marks: list[float]) -> Iterator[dict[str, object]]:
     """Yield the picture that is shown after so many seconds, and the film's own picture at that moment."""
-    viewing, size, started = window.viewing, scene.camera.resolution, clock.now()
-    viewing.show(scene, 1, False)
+    renderer, size, started = window.renderer, scene.camera.resolution, clock.now()
+    renderer.show(scene, 1, False)
     for mark in marks:
         window.run(mark - (clock.now() - started))
-        mapper = viewing.mapper
+        mapper = renderer.mapper
         samples = mapper.iteration if mapper.film.width == size[0] else 0
         yield {
             "shown": in_frame(window.pictures[-1][2], size),
@@ -147,7 +147,7 @@ def rppm_pictures(window: Window, clock: Clock, scene: Scene, marks: list[float]
 def orbit(window: Window, scene: Scene) -> dict[str, float]:
     """Pictures a second while the view turns about the world's axis."""
     before, rendered, state = len(window.pictures), window.rendered, {"view": 1}
-    viewing = window.viewing
+    renderer = window.renderer
 
     def turn(passed: float) -> None:
         view = 2 + int(passed * VIEWS_A_SECOND)
@@ -158,7 +158,7 @@ def orbit(window: Window, scene: Scene) -> dict[str, float]:
         matrix = np.eye(4)
         matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
         camera = dataclasses.replace(scene.camera, matrix=matrix @ scene.camera.matrix)
-        viewing.show(dataclasses.replace(scene, camera=camera), view, True)
+        renderer.show(dataclasses.replace(scene, camera=camera), view, True)
 
     window.run(ORBIT_SECONDS, turn)
     shown = window.pictures[before:]
@@ -226,9 +226,9 @@ def measure(options: argparse.Namespace, name: str, context: Context, library: P
     else:
         reference = rppm_reference(context, library, clock, scene, options.reference)
     window = Window(context, library, clock)
-    window.viewing.show(scene, 1, False)
+    window.renderer.show(scene, 1, False)
     window.run(0.5)  # compile
-    window.viewing.show(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera)), 2, True)
+    window.renderer.show(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera)), 2, True)
     window.run(0.5)
     window.reopen()
     started, exposure = clock.now(), exposure_of(reference)
@@ -239,7 +239,7 @@ def measure(options: argparse.Namespace, name: str, context: Context, library: P
         row["marks"].append(found)
     row["first_picture"] = window.pictures[0][0] - started
     row["orbit"] = orbit(window, scene)
-    window.viewing.release()
+    window.renderer.release()
     for found in row["marks"]:
         found["cycles"] = cycles_picture(found["cycles_samples"], size, SEED)
         for way in ("noisy", "shown", "cycles"):

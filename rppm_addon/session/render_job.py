@@ -22,8 +22,8 @@ class RenderJob:
     snapshots: tuple[float, ...] = ()
 
     continuation: "Continuation | None" = None
-    """Where the render begins and who receives its state, read after on_start. In the renderer's process, ``checkpoint``
-    is used instead."""
+    """Where the render begins and who receives its state, read after on_start. The renderer's process uses
+    ``checkpoint`` instead."""
 
     checkpoint: "Path | None" = None
     """The file from which a render in the renderer's process continues and in which it is kept; None is none."""

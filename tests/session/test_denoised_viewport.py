@@ -62,14 +62,14 @@ class Shown(list):
     def __init__(self):
         super().__init__()
         self.statuses = []
-        self.viewing = None
+        self.renderer = None
         self._receiver = FrameReceiver()
 
     def send(self, kind, **content):
         self._receiver(kind, **content)
         self.statuses = self._receiver.statuses
         if kind == "frame":
-            self.append((self.viewing.mapper.iteration, bool(self._receiver.picture[0, 0, 0] > MARK)))
+            self.append((self.renderer.mapper.iteration, bool(self._receiver.picture[0, 0, 0] > MARK)))
 
 
 @pytest.fixture(scope="module")
@@ -95,10 +95,10 @@ def viewport(device, denoiser, monkeypatch):
     monkeypatch.setattr("rppm_addon.session.process.background_denoising.MOST_TIME", 1.0)
     shown = Shown()
     with device[0].moderngl:
-        shown.viewing = ViewportRenderer(*device, denoiser, shown.send, AllKnown())
+        shown.renderer = ViewportRenderer(*device, denoiser, shown.send, AllKnown())
         yield shown
         denoiser.let.set()
-        shown.viewing.release()
+        shown.renderer.release()
 
 
 def scene_of(iterations=6, **settings):
@@ -109,10 +109,10 @@ def scene_of(iterations=6, **settings):
 
 
 def render(viewport, scene, generation=1):
-    viewport.viewing.show(scene, generation, False)
+    viewport.renderer.show(scene, generation, False)
     deadline = time.monotonic() + 120.0
-    while viewport.viewing.busy:
-        viewport.viewing.run_slice()
+    while viewport.renderer.busy:
+        viewport.renderer.run_slice()
         assert time.monotonic() < deadline
 
 
@@ -133,32 +133,32 @@ def test_a_start_after_the_end_denoises_nothing(viewport, denoiser):
 def test_iterations_go_on_while_a_picture_is_denoised(viewport, denoiser):
     """All of them, and noisy pictures are shown until the first denoised one is there."""
     denoiser.let.clear()
-    viewport.viewing.show(scene_of(5), 1, False)
+    viewport.renderer.show(scene_of(5), 1, False)
     while len(viewport) < 5:
-        viewport.viewing.run_slice()
+        viewport.renderer.run_slice()
     for _ in range(3):
-        viewport.viewing.run_slice()
-    assert viewport == [(number, False) for number in range(1, 6)] and viewport.viewing.busy
+        viewport.renderer.run_slice()
+    assert viewport == [(number, False) for number in range(1, 6)] and viewport.renderer.busy
     assert not viewport.statuses[-1]["settled"]
     denoiser.let.set()
-    while viewport.viewing.busy:
-        viewport.viewing.run_slice()
+    while viewport.renderer.busy:
+        viewport.renderer.run_slice()
     assert viewport[-1] == (5, True) and viewport.statuses[-1]["settled"]
     assert len(denoiser.given) == 2  # the first picture, and the last
 
 
 def test_what_was_denoised_of_a_scene_that_is_gone_is_not_shown(viewport, denoiser):
     denoiser.let.clear()
-    viewport.viewing.show(scene_of(), 1, False)
+    viewport.renderer.show(scene_of(), 1, False)
     while not viewport:
-        viewport.viewing.run_slice()
-    viewport.viewing.show(scene_of(2), 2, False)
+        viewport.renderer.run_slice()
+    viewport.renderer.show(scene_of(2), 2, False)
     while viewport[-1] != (2, False):
-        viewport.viewing.run_slice()
+        viewport.renderer.run_slice()
     count = len(viewport)
     denoiser.let.set()
-    while viewport.viewing.busy:
-        viewport.viewing.run_slice()
+    while viewport.renderer.busy:
+        viewport.renderer.run_slice()
     assert viewport[count:] == [(2, True)]  # the last of the second scene alone
 
 
@@ -178,9 +178,9 @@ def test_without_a_library(device, monkeypatch):
     monkeypatch.setattr(ResolutionScaler, "levels", lambda *_: [1.0])
     shown = Shown()
     with device[0].moderngl:
-        shown.viewing = ViewportRenderer(*device, Denoiser([]), shown.send, AllKnown())
+        shown.renderer = ViewportRenderer(*device, Denoiser([]), shown.send, AllKnown())
         render(shown, scene_of(2))
-        shown.viewing.release()
+        shown.renderer.release()
     assert [which for _, which in shown] == [False, False]
     (warning,) = shown.statuses[-1]["warnings"]
     assert warning.startswith("the viewport is not denoised: Open Image Denoise is not there: take a Blender")

@@ -110,18 +110,21 @@ def test_a_device_that_is_lost_again_and_again_ends_the_render(monkeypatch):
 
 
 class KillingJob(RenderJob):
-    """Kills the process once it has handed over what another one needs, if ``process`` is given."""
+    """Kills the process once it has handed over what another one needs, if ``process`` is given.
+
+    A process hands its state over after the first iteration that ends after FIRST_SAFEGUARD_SECONDS: the state is there
+    with the progress of the next one.
+    """
 
     def __init__(self, process=None):
-        self.process, self.iterations = process, []
+        self.process, self.iterations, self.late = process, [], 0
 
     def on_progress(self, progress):
         self.iterations.append(progress.iteration)
-        if self.process is not None:
-            (session,) = self.process.sessions.values()
-            if session._kept is not None:
-                self.process = None
-                os.kill(children().pop(), signal.SIGKILL)
+        self.late += progress.elapsed_seconds > checkpoint_schedule.FIRST_SAFEGUARD_SECONDS
+        if self.process is not None and self.late > 1:
+            self.process = None
+            os.kill(children().pop(), signal.SIGKILL)
         return False
 
 

@@ -107,7 +107,7 @@ def test_of_many_scenes_the_last_is_shown(start):
             shown.add(frame.generation)
     wait_until(lambda: session.status.generation == 299 and session.status.settled)
     assert np.array_equal(session.newest().combined, expected(scene_of(2, exposure=299)).combined)
-    assert session._sent < 299 and len(shown) < 299
+    assert len(shown) < 299
 
 
 def test_pause(start):

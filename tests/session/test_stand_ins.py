@@ -102,14 +102,14 @@ def test_the_picture_begins_anew_with_what_is_ready(monkeypatch):
         if waits:
             monkeypatch.setattr(real, "has_stand_in", library.has_stand_in)
         sent = FrameReceiver()
-        viewing = ViewportRenderer(context, real, Denoiser([]), sent, known)
-        viewing.show(scene, 1, False)
-        while viewing.busy:
-            viewing.run_slice()
+        viewport = ViewportRenderer(context, real, Denoiser([]), sent, known)
+        viewport.show(scene, 1, False)
+        while viewport.busy:
+            viewport.run_slice()
             if waits and len(sent.frames) == 2:
                 library.ready = {"bsdf_diffuse"}
         pictures[waits] = [frame.combined for frame in sent.frames if frame.progress]
-        viewing.release()
+        viewport.release()
     real.release()
     context.release()
     assert {status["compilation"]["stood_in_for"] for status in sent.statuses} == {0, 1}

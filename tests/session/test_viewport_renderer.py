@@ -27,19 +27,19 @@ def known_programs():
 
 
 @pytest.fixture
-def open_viewing(known_programs):
+def open_viewport(known_programs):
     """A function that opens viewports of one process; they share what is compiled."""
     context = Context.create()
     library, opened = ProgramLibrary(context), []
 
-    def open_viewing():
+    def open_viewport():
         sent = FrameReceiver()
         opened.append(ViewportRenderer(context, library, Denoiser([]), sent, known_programs))
         return opened[-1], sent
 
-    yield open_viewing
-    for viewing in opened:
-        viewing.release()
+    yield open_viewport
+    for viewport in opened:
+        viewport.release()
     library.release()
     context.release()
 
@@ -50,9 +50,9 @@ def scene_of(**changes):
     return dataclasses.replace(scene, **changes)
 
 
-def run(viewing):
-    while viewing.busy:
-        viewing.run_slice()
+def run(viewport):
+    while viewport.busy:
+        viewport.run_slice()
 
 
 def compiled(sent):
@@ -60,43 +60,43 @@ def compiled(sent):
     return [status["compilation"]["started"] for status in sent.statuses if status["progress"] is None]
 
 
-def test_a_first_look_comes_before_anything_is_compiled(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    viewing.run_slice()
+def test_a_first_look_comes_before_anything_is_compiled(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    viewport.run_slice()
     assert sent.shown == [(1, 0.0)]
     assert not sent.statuses  # which say what is compiled
     look = sent.picture
     # The floor covers the left half.
     assert (look[:, :8, :3] > 0.1).all() and not look[:, 8:, :3].any()
-    run(viewing)
+    run(viewport)
     assert sent.shown[-1] == (1, 1.0) and sorted(sent.shown) == sent.shown
     assert [progress for _, progress in sent.shown].count(0.0) == 1
     assert compiled(sent) == sorted(compiled(sent)) and compiled(sent)[-1] > 2
 
 
-def test_there_is_none_once_there_was_a_frame(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_there_is_none_once_there_was_a_frame(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     seen = len(sent.frames)
-    viewing.show(scene_of(exposure=0.5), 2, False)
-    run(viewing)
+    viewport.show(scene_of(exposure=0.5), 2, False)
+    run(viewport)
     assert 0.0 not in [progress for _, progress in sent.shown[seen:]] and sent.shown[-1] == (2, 1.0)
 
 
-def test_there_is_none_when_the_programs_are_ready(open_viewing):
+def test_there_is_none_when_the_programs_are_ready(open_viewport):
     for expected in (1, 0):
-        viewing, sent = open_viewing()
-        viewing.show(scene_of(), 1, False)
-        run(viewing)
+        viewport, sent = open_viewport()
+        viewport.show(scene_of(), 1, False)
+        run(viewport)
         assert [progress for _, progress in sent.shown].count(0.0) == expected
 
 
-def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewing, known_programs):
-    viewing, _ = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewport, known_programs):
+    viewport, _ = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     scene = scene_of()
     assert known_programs.cover(scene)
     glossy = dataclasses.replace(scene.materials[0], graph=dataclasses.replace(scene.materials[0].graph))
@@ -106,7 +106,7 @@ def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewing, known
     raised.graph.displacement = raised.graph.add("displacement", "displacement", height=0.5)
     displaced = scene_of(materials=[raised])
     assert not known_programs.cover(displaced)
-    other, _ = open_viewing()
+    other, _ = open_viewport()
     other.show(displaced, 1, False)
     run(other)
     assert known_programs.cover(displaced)
@@ -117,30 +117,30 @@ def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewing, known
     assert not known_programs.cover(dataclasses.replace(scene, instances=scene.instances * many))
 
 
-def test_panoramas_have_none(open_viewing):
-    viewing, sent = open_viewing()
+def test_panoramas_have_none(open_viewport):
+    viewport, sent = open_viewport()
     camera = dataclasses.replace(
         scene_of().camera, panorama=Panorama(PanoramaKind.EQUIRECTANGULAR), window=(0.0, 1.0, 0.0, 1.0)
     )
-    viewing.show(scene_of(camera=camera), 1, False)
-    run(viewing)
+    viewport.show(scene_of(camera=camera), 1, False)
+    run(viewport)
     assert 0.0 not in [progress for _, progress in sent.shown] and sent.shown[-1] == (1, 1.0)
 
 
-def test_it_follows_the_view_while_programs_are_compiled(open_viewing):
-    viewing, sent = open_viewing()
+def test_it_follows_the_view_while_programs_are_compiled(open_viewport):
+    viewport, sent = open_viewport()
     scene = scene_of()
-    viewing.show(scene, 1, False)
-    viewing.run_slice()
+    viewport.show(scene, 1, False)
+    viewport.run_slice()
     moved = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, window=(-0.6, 0.4, -0.375, 0.375)))
-    viewing.expect(moved, 2)  # as the reading thread says, while the renderer takes no messages
-    viewing.run_slice()
+    viewport.expect(moved, 2)  # as the reading thread says, while the renderer takes no messages
+    viewport.run_slice()
     assert sent.shown == [(1, 0.0), (2, 0.0)]
-    viewing.show(moved, 2, False)
-    run(viewing)
+    viewport.show(moved, 2, False)
+    run(viewport)
     assert sorted(sent.shown) == sent.shown, "the view jumps back"
     assert sent.shown[-1] == (2, 1.0)
-    other, other_sent = open_viewing()
+    other, other_sent = open_viewport()
     other.show(moved, 1, False)
     run(other)
     assert (0.0 not in [progress for _, progress in other_sent.shown]) and np.array_equal(
@@ -148,14 +148,14 @@ def test_it_follows_the_view_while_programs_are_compiled(open_viewing):
     )
 
 
-def test_a_viewport_is_done_with_its_noise(open_viewing):
-    viewing, sent = open_viewing()
+def test_a_viewport_is_done_with_its_noise(open_viewport):
+    viewport, sent = open_viewport()
     settings = dataclasses.replace(
         floor_scene().settings, iterations=1000, use_adaptive_sampling=True, adaptive_threshold=1.0,
         adaptive_min_samples=33,
     )  # fmt: skip
-    viewing.show(scene_of(settings=settings), 1, False)
-    run(viewing)
+    viewport.show(scene_of(settings=settings), 1, False)
+    run(viewport)
     status = sent.statuses[-1]
     assert status["settled"] and status["progress"]["iteration"] == 40
     assert 0.0 < status["progress"]["noise"] < status["progress"]["noise_threshold"] == 1.0
@@ -171,42 +171,42 @@ def turned(scene, columns):
     )
 
 
-def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_viewing):
-    viewing, sent = open_viewing()
+def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_viewport):
+    viewport, sent = open_viewport()
     scene = scene_of()
-    viewing.show(scene, 1, False)
-    run(viewing)
+    viewport.show(scene, 1, False)
+    run(viewport)
     before, rendered = sent.picture, len(sent.statuses)
-    viewing.show(turned(scene, 2), 2, True)
-    viewing.run_slice()
+    viewport.show(turned(scene, 2), 2, True)
+    viewport.run_slice()
     assert sent.shown[-1] == (2, 0.0) and len(sent.statuses) == rendered  # no iteration is done
     moved = sent.picture
     np.testing.assert_allclose(moved[:, :5], before[:, 2:7], atol=2e-3)
-    viewing.show(turned(scene, 4), 3, True)
-    run(viewing)
+    viewport.show(turned(scene, 4), 3, True)
+    run(viewport)
     generations = [generation for generation, _ in sent.shown]
     assert sorted(generations) == generations, "the view jumps back"
     assert sent.shown[-1] == (3, 1.0)
-    other, other_sent = open_viewing()
+    other, other_sent = open_viewport()
     other.show(turned(scene, 4), 1, False)
     run(other)
     np.testing.assert_array_equal(sent.picture, other_sent.picture)
 
 
-def test_after_another_change_nothing_is_moved(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_after_another_change_nothing_is_moved(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     seen = len(sent.frames)
-    viewing.show(turned(scene_of(exposure=0.5), 2), 2, True)
-    run(viewing)
+    viewport.show(turned(scene_of(exposure=0.5), 2), 2, True)
+    run(viewport)
     assert 0.0 not in [progress for _, progress in sent.shown[seen:]]
 
 
-def test_the_memory_of_pictures_is_reported(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_the_memory_of_pictures_is_reported(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     reported = sent.statuses[-1]["progress"]["memory_bytes"]
-    of_pictures = reported - sum(viewing.mapper.memory_bytes.values())
+    of_pictures = reported - sum(viewport.mapper.memory_bytes.values())
     assert 0 < of_pictures <= sum(expected_bytes(StageSizes(16, 12)).values())

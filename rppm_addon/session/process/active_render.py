@@ -5,8 +5,9 @@ from ...denoising.denoiser import Denoiser
 from ...pictures import PictureError
 from ...scene.scene import Scene
 from ..checkpoint_writer import CheckpointWriter
+from ..denoised_pictures import wanted_frame
 from ..render_loop import RenderLoop
-from ..results import RenderResult
+from ..results import Frame, RenderResult
 from .background_denoising import BackgroundFinish
 
 
@@ -51,3 +52,7 @@ class ActiveRender:
     def has_picture(self) -> bool:
         """Whether iterations are still run and the film is that of a complete one."""
         return self._finish is None and self.loop.between_iterations and self.loop.iterations > 0
+
+    def picture(self) -> Frame:
+        """Return the noisy picture so far, with the passes that the settings name."""
+        return wanted_frame(self.loop.frame(), self._scene.settings)

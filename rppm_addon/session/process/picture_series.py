@@ -25,7 +25,7 @@ class PictureSeries:
             level: fraction of the full side length, above 0 to 1.
             began: time.perf_counter() before the mapper received the scene.
         """
-        self._mapper = mapper
+        self.mapper = mapper
         self.scene = scene
         self.generation = generation
         self._level = level
@@ -36,17 +36,17 @@ class PictureSeries:
     @property
     def is_complete(self) -> bool:
         """Whether the last iteration is done, by the settings' number or by the noise."""
-        return self._mapper.iteration >= self.scene.settings.iterations or self._noise.is_reached
+        return self.mapper.iteration >= self.scene.settings.iterations or self._noise.is_reached
 
     @property
     def progress(self) -> float:
         """Fraction of the settings' iterations done, 0 to 1."""
-        return self._mapper.iteration / self.scene.settings.iterations
+        return self.mapper.iteration / self.scene.settings.iterations
 
     def measure_noise(self) -> None:
         """Measure the noise after an iteration where the threshold needs it."""
-        if self._noise.is_due(self._mapper.iteration):
-            self._noise.add(self._mapper.iteration, self._mapper.measure_noise())
+        if self._noise.is_due(self.mapper.iteration):
+            self._noise.add(self.mapper.iteration, self.mapper.measure_noise())
 
     def status(self, now: float, memory_bytes: int, stood_in_for: int) -> SessionStatus:
         """Return the status after an iteration.
@@ -56,7 +56,7 @@ class PictureSeries:
             memory_bytes: bytes on the device.
             stood_in_for: number of programs in whose place stand-ins are rendered.
         """
-        mapper, noise = self._mapper, self._noise
+        mapper, noise = self.mapper, self._noise
         return SessionStatus(
             self.generation,
             CompilationProgress(stood_in_for=stood_in_for),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A session of the renderer's process that renders scenes to their end: F12, an animation, or a preview."""
 
+import functools
 import logging
 from collections.abc import Sequence
 
@@ -9,11 +10,12 @@ import numpy as np
 from ...denoising.denoiser import Denoiser
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
+from ...integrator.common.require import require
 from ...integrator.progressive import ProgressivePhotonMapper
 from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
 from ..continuation import Pause
-from ..denoised_pictures import finished_frame, wanted_frame
+from ..denoised_pictures import finished_frame
 from ..render_loop import RenderLoop
 from ..results import Frame, Progress, RenderResult
 from .active_render import ActiveRender
@@ -109,13 +111,13 @@ class Rendering:
         """Render for a bounded time. Raises DeviceLostError, and BrokenPipeError when Blender has left."""
         self._library.pacing.share_with_window(False)
         try:
-            if self._render is None:
-                self._render = self._begin(self._scene)
-            result = self._render.run_slice(is_stopping=self._stopped_generation == self._generation)
+            render = self._render = self._render or self._begin(require(self._scene))
+            result = render.run_slice(is_stopping=self._stopped_generation == self._generation)
             if result is not None:
                 self._end(result)
-            elif self._picture_requested and self._render.has_picture:
-                self._send_picture(self._render.loop)
+            elif self._picture_requested and render.has_picture:
+                self._picture_requested = False
+                self._sender.send_picture(render.picture(), render.loop.progress)
         except (BrokenPipeError, DeviceLostError):
             raise
         except Exception as error:
@@ -125,28 +127,27 @@ class Rendering:
     def _begin(self, scene: Scene) -> ActiveRender:
         """Start the render of a scene; its clock runs from now on."""
         self._library.hurry(True)
-        self._mapper = self._mapper or ProgressivePhotonMapper(self._context, self._library)
+        mapper = self._mapper = self._mapper or ProgressivePhotonMapper(self._context, self._library)
         writer, continuation = self._resumption.begin(scene, self._snapshots)
         continuation.safeguard = self._send_state
         loop = RenderLoop(
             self._context,
-            self._mapper,
+            mapper,
             scene,
             on_progress=lambda progress, _: self._sender.send_progress(progress),
             snapshots=self._snapshots,
-            on_snapshot=self._send_snapshot,
+            on_snapshot=functools.partial(self._send_snapshot, scene),
             continuation=continuation,
         )
         if self._first_looks is not None:
             if continuation.begin is None and not self._programs.cover(scene):
-                self._send_first_look(scene, self._first_looks, loop.elapsed)
+                self._send_first_look(scene, self._first_looks.draw(scene, mapper), loop.elapsed)
             self._first_looks.release()
             self._first_looks = None
         return ActiveRender(loop, scene, self._denoiser, writer)
 
-    def _send_first_look(self, scene: Scene, first_looks: FirstLooks, elapsed: float) -> None:
-        """Send a picture at iteration 0, before the programs of the scene are compiled."""
-        combined = first_looks.draw(scene, self._mapper)
+    def _send_first_look(self, scene: Scene, combined: np.ndarray | None, elapsed: float) -> None:
+        """Send a first look at iteration 0, before the programs of the scene are compiled, if there is one."""
         if combined is not None:
             np.nan_to_num(combined, copy=False)
             self._sender.send_picture(Frame(combined, {}), Progress(0, scene.settings.iterations, elapsed, photons=0))
@@ -154,19 +155,14 @@ class Rendering:
     def _send_state(self, pause: Pause, seconds: float) -> None:
         self._sender.send_state(pause, self._generation, seconds)
 
-    def _send_snapshot(self, seconds: float, frame: Frame) -> None:
-        finished = finished_frame(frame, self._scene.settings, self._denoiser, self._scene.warnings)
+    def _send_snapshot(self, scene: Scene, seconds: float, frame: Frame) -> None:
+        finished = finished_frame(frame, scene.settings, self._denoiser, scene.warnings)
         self._sender.send_snapshot(finished, seconds)
-
-    def _send_picture(self, loop: RenderLoop) -> None:
-        """Send the picture that Blender has requested."""
-        self._picture_requested = False
-        self._sender.send_picture(wanted_frame(loop.frame(), self._scene.settings), loop.progress)
 
     def _end(self, result: RenderResult) -> None:
         """Send the result. The mapper keeps the scene for the next one."""
         if result.statistics.iterations > 0:
-            self._programs.add(self._mapper.device_scene.materials)
+            self._programs.add(require(self._mapper).device_scene.materials)
         self._scene = self._render = None
         self._sender.send_result(result)
 

@@ -75,7 +75,7 @@ class ViewportRenderer:
                 self._reproject(self._scheduler.pending)
             if self.mapper is not None and not self._has_rendered:
                 self._library.on_start = self._while_compiling
-            if next(self._slices, self) is self:
+            if self._slices is not None and next(self._slices, self) is self:
                 self._slices = None
         except (BrokenPipeError, DeviceLostError):
             raise
@@ -93,24 +93,25 @@ class ViewportRenderer:
 
     def _render_level(self, request: ViewRequest, level: float) -> Iterator[None]:
         """Render a scene at one resolution, and again as materials' own programs replace stand-ins."""
-        if self.mapper is None:
-            self.mapper = ProgressivePhotonMapper(self._context, self._library)
+        mapper = self.mapper = self.mapper or ProgressivePhotonMapper(self._context, self._library)
         is_first = not self._has_rendered and self._presenter.newest_generation < request.generation
         if is_first and not self._programs.cover(request.scene):
-            self._presenter.present_first_look(request.scene, request.generation, self.mapper)
+            self._presenter.present_first_look(request.scene, request.generation, mapper)
             yield
         self._library.hurry(True)
         while True:
-            is_complete = yield from self._render_series(request, level)
+            is_complete = yield from self._render_series(mapper, request, level)
             while is_complete and self._stand_ins.count and not self._stand_ins.due:
                 time.sleep(POLL_SECONDS)
                 yield
             if not self._stand_ins.due:
                 return
 
-    def _render_series(self, request: ViewRequest, level: float) -> Generator[None, None, bool]:
+    def _render_series(
+        self, mapper: ProgressivePhotonMapper, request: ViewRequest, level: float
+    ) -> Generator[None, None, bool]:
         """Run iterations until something else is due. Returns whether all were run."""
-        mapper, scene = self.mapper, self._stand_ins.replace(request.scene)
+        scene = self._stand_ins.replace(request.scene)
         began = time.perf_counter()
         center_tolerance = math.inf if level < 1.0 else 0.0
         mapper.update(at_level(scene, level), center_tolerance, demands_of(scene, level, request.scene.materials))
@@ -138,14 +139,14 @@ class ViewportRenderer:
 
     def _present(self, series: PictureSeries) -> None:
         """Present the picture of an iteration, if it is due, or begin to denoise it."""
-        mapper, scene = self.mapper, series.scene
+        mapper, scene = series.mapper, series.scene
         per_frame = scene.settings.iterations_per_frame
         if not (series.is_complete or self._scheduler.is_picture_due(mapper.iteration, per_frame)):
             return
         began = time.perf_counter()
         shows_noisy = not self._denoising.has_picture
         if self._denoising.is_wanted(mapper.iteration) and self._denoising.is_due:
-            self._start_denoising(scene)
+            self._start_denoising(series)
         if shows_noisy:
             self._presenter.present(scene, series.generation, mapper, series.is_complete)
         self._scheduler.add_picture(began, mapper.film.width * mapper.film.height, began - series.began)
@@ -153,9 +154,9 @@ class ViewportRenderer:
             self._has_rendered = True
             self._programs.add(mapper.device_scene.materials)
 
-    def _start_denoising(self, scene: Scene) -> None:
-        film = self.mapper.film
-        self._denoising.start(self.mapper.iteration, film_picture(film, scene), film.read_passes())
+    def _start_denoising(self, series: PictureSeries) -> None:
+        film = series.mapper.film
+        self._denoising.start(series.mapper.iteration, film_picture(film, series.scene), film.read_passes())
 
     def _present_denoised(self, series: PictureSeries, seconds: float = 0.0) -> int:
         """Present a picture that is denoised within so many seconds. Returns its iteration, 0 if there is none."""
@@ -168,10 +169,10 @@ class ViewportRenderer:
 
     def _finish_denoising(self, series: PictureSeries) -> Iterator[None]:
         """Present the denoised picture of the last iteration, if the settings ask for it."""
-        iteration, last = 0, self.mapper.iteration
+        iteration, last = 0, series.mapper.iteration
         while self._denoising.is_wanted(last) and iteration < last:
             if self._denoising.is_idle:
-                self._start_denoising(series.scene)
+                self._start_denoising(series)
             yield
             iteration = max(iteration, self._present_denoised(series, POLL_SECONDS))
 
@@ -182,7 +183,7 @@ class ViewportRenderer:
 
     def _while_compiling(self, program: str) -> None:
         """Between two programs of the first picture, present the view that has changed and report the compilation."""
-        if self._arriving is not None:
+        if self._arriving is not None and self.mapper is not None:
             self._presenter.update_first_look(self._arriving.scene, self._arriving.generation, self.mapper)
         self._status.report_compilation(program)
 
