@@ -61,12 +61,12 @@ def look(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
         if kind == "frame":
             found.add(content["progress"] > 0.0)
 
-    viewing = ViewportRenderer(context, library, Denoiser([]), take, KnownPrograms())
+    renderer = ViewportRenderer(context, library, Denoiser([]), take, KnownPrograms())
     found = Found()
-    viewing.show(scene, 1, False)
+    renderer.show(scene, 1, False)
     while found.true_light is None:
-        viewing.run_slice()
-    viewing.release()
+        renderer.run_slice()
+    renderer.release()
     return found
 
 

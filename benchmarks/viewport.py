@@ -34,7 +34,9 @@ from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 from rppm_addon.session.placeholders.known_programs import KnownPrograms
-from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer, shown_picture
+from rppm_addon.session.transport.frames import FrameReader
+from rppm_addon.session.viewport.presenter import film_picture
+from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
 
 from . import ROOT
 from .machine import Clock, describe
@@ -87,31 +89,35 @@ class Window:
         self._programs = KnownPrograms()
         self._context, self._library = context, library
         self.pictures: list[tuple[float, int, np.ndarray]] = []
-        """When, of which view, and what."""
-        self.viewing = self._open()
+        """Time, generation and pixels of each frame."""
+        self.rendered = 0
+        """Number of frames that were rendered, and not reprojected."""
+        self._reader: FrameReader | None = None
+        self.renderer = self._open()
 
     def _open(self) -> ViewportRenderer:
         return ViewportRenderer(self._context, self._library, Denoiser([]), self._take, self._programs)
 
     def _take(self, kind: str, **content: object) -> None:
-        if kind == "frame":
-            width, height = content["width"], content["height"]
-            pixels = self.viewing._frames._slots.pixels[content["slot"]][: 4 * width * height]
-            self.pictures.append((self._clock.now(), content["generation"], pixels.reshape(height, width, 4).copy()))
+        if kind == "slots":
+            self._reader = FrameReader(**content)
+        elif kind == "frame":
+            self.rendered += content.pop("progress") > 0.0
+            self.pictures.append((self._clock.now(), content["generation"], self._reader.read(**content)))
 
     def reopen(self) -> None:
         """Begin as a viewport that has shown nothing."""
-        self.viewing.release()
-        self.viewing, self.pictures = self._open(), []
+        self.renderer.release()
+        self.renderer, self.pictures = self._open(), []
 
     def run(self, seconds: float, during: Callable[[float], None] = lambda _: None) -> None:
         """Go on for so long, or until all is rendered."""
         started = self._clock.now()
         while (passed := self._clock.now() - started) < seconds:
             during(passed)
-            if not self.viewing.busy:
+            if not self.renderer.busy:
                 break
-            self.viewing.run_slice()
+            self.renderer.run_slice()
             self._context.finish()
 
 
@@ -125,23 +131,23 @@ def in_frame(picture: np.ndarray, size: tuple[int, int]) -> np.ndarray:
 
 def rppm_pictures(window: Window, clock: Clock, scene: Scene, marks: list[float]) -> Iterator[dict[str, object]]:
     """Yield the picture that is shown after so many seconds, and the film's own picture at that moment."""
-    viewing, size, started = window.viewing, scene.camera.resolution, clock.now()
-    viewing.show(scene, 1, False)
+    renderer, size, started = window.renderer, scene.camera.resolution, clock.now()
+    renderer.show(scene, 1, False)
     for mark in marks:
         window.run(mark - (clock.now() - started))
-        mapper = viewing._mapper
+        mapper = renderer.mapper
         samples = mapper.iteration if mapper.film.width == size[0] else 0
         yield {
             "shown": in_frame(window.pictures[-1][2], size),
-            "noisy": in_frame(shown_picture(mapper.film, scene), size),
+            "noisy": in_frame(film_picture(mapper.film, scene), size),
             "samples": samples,
         }
 
 
 def orbit(window: Window, scene: Scene) -> dict[str, float]:
     """Pictures a second while the view turns about the world's axis."""
-    before, state = len(window.pictures), {"view": 1, "rendered": 0}
-    viewing = window.viewing
+    before, rendered, state = len(window.pictures), window.rendered, {"view": 1}
+    renderer = window.renderer
 
     def turn(passed: float) -> None:
         view = 2 + int(passed * VIEWS_A_SECOND)
@@ -152,18 +158,11 @@ def orbit(window: Window, scene: Scene) -> dict[str, float]:
         matrix = np.eye(4)
         matrix[:2, :2] = [[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]]
         camera = dataclasses.replace(scene.camera, matrix=matrix @ scene.camera.matrix)
-        viewing.show(dataclasses.replace(scene, camera=camera), view, True)
+        renderer.show(dataclasses.replace(scene, camera=camera), view, True)
 
-    give_out = viewing._give_out
-
-    def counted(*arguments: object) -> None:
-        state["rendered"] += 1
-        give_out(*arguments)
-
-    viewing._give_out = counted
     window.run(ORBIT_SECONDS, turn)
     shown = window.pictures[before:]
-    return {"shown": len(shown) / ORBIT_SECONDS, "rendered": state["rendered"] / ORBIT_SECONDS}
+    return {"shown": len(shown) / ORBIT_SECONDS, "rendered": (window.rendered - rendered) / ORBIT_SECONDS}
 
 
 def cycles_picture(samples: int, size: tuple[int, int], seed: int) -> np.ndarray:
@@ -227,9 +226,9 @@ def measure(options: argparse.Namespace, name: str, context: Context, library: P
     else:
         reference = rppm_reference(context, library, clock, scene, options.reference)
     window = Window(context, library, clock)
-    window.viewing.show(scene, 1, False)
+    window.renderer.show(scene, 1, False)
     window.run(0.5)  # compile
-    window.viewing.show(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera)), 2, True)
+    window.renderer.show(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera)), 2, True)
     window.run(0.5)
     window.reopen()
     started, exposure = clock.now(), exposure_of(reference)
@@ -240,7 +239,7 @@ def measure(options: argparse.Namespace, name: str, context: Context, library: P
         row["marks"].append(found)
     row["first_picture"] = window.pictures[0][0] - started
     row["orbit"] = orbit(window, scene)
-    window.viewing.release()
+    window.renderer.release()
     for found in row["marks"]:
         found["cycles"] = cycles_picture(found["cycles_samples"], size, SEED)
         for way in ("noisy", "shown", "cycles"):

@@ -78,7 +78,7 @@ def splat_radius(subject: Subject, clock: Clock, quick: bool) -> dict:
             rendering.start(radius_minimum=factor * automatic, radius_maximum=factor * automatic)
             rendering.mapper.learning.learn = lambda *_: None  # which would change photons and wide radius
             rendering.iterate()  # finds the wide radius
-            rendering.mapper.learning.wide_radius *= factor
+            rendering.mapper.learning.radius_schedule.wide_radius *= factor
             # The same photons and camera rays at each radius, as these follow the iteration's number.
             seconds = rendering.mean_iteration(scale.repetitions)
             narrow, wide = rendering.mapper.splat_radii

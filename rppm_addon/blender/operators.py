@@ -6,7 +6,7 @@ import contextlib
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from ..session.transport.client import ProcessState
+from ..session.client.client import ProcessState
 from . import colored_glasses, panels
 from .render_client import renderer_process
 from .subjects import SubjectKind, select

@@ -9,7 +9,7 @@ import bpy
 
 from ..denoising.places import REMEDY
 from ..scene.common.quantities import bytes_text
-from ..session.transport.client import ProcessState
+from ..session.client.client import ProcessState
 from . import self_test
 from .panels.base import letters_across, paragraph, reading
 from .render_client import renderer_process

@@ -51,7 +51,7 @@ class MemoryReading:
 
 
 def memory_reading(settings: RenderSettings, width: int, height: int, report: RenderReport | None) -> MemoryReading:
-    """Return the memory to render width x height pixels. report: a former render, which tells the scene's own part."""
+    """Return the memory to render width x height pixels. report: a former render, which has the scene's own part."""
 
     def expected(settings: RenderSettings, width: int, height: int, in_viewport: bool = False) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
@@ -62,7 +62,7 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     scene_bytes = None
     if report is not None:
         before = expected(report.settings, report.width, report.height, report.kind is RenderKind.VIEWPORT)
-        scene_bytes = max(0, report.memory_bytes - before.total_bytes)
+        scene_bytes = max(0, report.progress.memory_bytes - before.total_bytes)
     return MemoryReading(expected(settings, width, height), scene_bytes)
 
 

@@ -6,14 +6,15 @@ import threading
 from dataclasses import dataclass, field, replace
 
 from ..scene import RenderSettings, Scene
+from ..session.render.results import PhotonStatistics, Progress, RenderStatistics
 from ..session.transport.sessions import SessionStatus
 
 FINALS_KEPT = 5
-"""Final renders of a scene, to compare."""
+"""Number of final renders that are kept of a scene, to compare."""
 SCENES_KEPT = 16
-"""Scenes that were rendered last; older ones are forgotten."""
+"""Number of scenes with reports, those that were rendered last."""
 WARNINGS_KEPT = 200
-"""Warnings of a render; the log has them all."""
+"""Number of warnings that are kept of a render; the log has all."""
 
 
 class RenderKind(enum.Enum):
@@ -30,92 +31,72 @@ class RenderReport:
     kind: RenderKind
     width: int
     height: int
+    """Pixels."""
     settings: RenderSettings
     """Settings with which the scene was rendered."""
-    iterations: int
-    photons: int
-    """Emitted in all iterations."""
-    seconds: float
-    """Since the render began, building included."""
-    radius_meters: float
-    """r_max of the last iteration."""
-    memory_bytes: int
-    """On the device."""
-    build_seconds: float = 0.0
+    progress: Progress
+    photon_statistics: PhotonStatistics = field(default_factory=PhotonStatistics)
+    """Statistics of the last iteration."""
     device: str = ""
     triangles: int = 0
-    source_watts: dict[str, float] = field(default_factory=dict)
-    """Power by light source, as integrator/lights/sources.py names them."""
-    source_photons: dict[str, int] = field(default_factory=dict)
-    """Photons of the last iteration by light source."""
-    density_estimation: str = ""
-    """The route that was taken, a name of DensityEstimation; empty before the first iteration."""
-    first_photon_hits: str = ""
-    """The route of the last iteration, a name of FirstPhotonHits; empty before the first."""
-    noise: float = 0.0
-    """When it was measured last, in the unit of the noise threshold; 0 without one."""
     warnings: tuple[str, ...] = ()
     warning_count: int = 0
-    """All of them, where ``warnings`` was cut short."""
-
-    @property
-    def photons_per_iteration(self) -> int:
-        """Photons of each iteration; all iterations have equally many."""
-        return self.photons // max(self.iterations, 1)
-
-    @property
-    def rendering_seconds(self) -> float:
-        """Without export and compilation."""
-        return max(self.seconds - self.build_seconds, 1e-9)
-
-    @property
-    def iterations_per_second(self) -> float:
-        """While rendering; 0 before the first."""
-        return self.iterations / self.rendering_seconds
-
-    @property
-    def photons_per_second(self) -> float:
-        """While rendering; 0 before the first iteration."""
-        return self.photons / self.rendering_seconds
+    """Number of all warnings, where ``warnings`` was cut short."""
 
 
 def viewport_report(status: SessionStatus, scene: Scene) -> RenderReport:
     """Return the report, so far, of a viewport that shows a scene."""
     width, height = scene.camera.resolution
-    rendering = status.iteration / status.iterations_per_second if status.iterations_per_second > 0.0 else 0.0
     return RenderReport(
         RenderKind.VIEWPORT,
         width,
         height,
         scene.settings,
-        status.iteration,
-        status.photons,
-        status.elapsed_seconds,
-        status.radius_meters,
-        status.memory_bytes,
-        build_seconds=max(0.0, status.elapsed_seconds - rendering),
+        status.progress or Progress(0, scene.settings.iterations, 0.0, photons=0),
+        status.photon_statistics,
         triangles=scene.triangle_count,
-        source_watts=status.source_watts,
-        source_photons=status.source_photons,
-        density_estimation=status.density_estimation,
-        first_photon_hits=status.first_photon_hits,
-        noise=status.noise,
         warnings=tuple(status.warnings),
+    )
+
+
+def final_report(statistics: RenderStatistics, scene: Scene) -> RenderReport:
+    """Return the report of a final render."""
+    width, height = scene.camera.resolution
+    progress = Progress(
+        statistics.iterations,
+        scene.settings.iterations,
+        statistics.seconds,
+        statistics.photons,
+        noise=statistics.noise,
+        noise_threshold=scene.settings.adaptive_threshold,
+        memory_bytes=sum(statistics.memory_bytes.values()),
+        build_seconds=statistics.build_seconds,
+    )
+    return RenderReport(
+        RenderKind.FINAL,
+        width,
+        height,
+        scene.settings,
+        progress,
+        statistics.photon_statistics,
+        statistics.device,
+        statistics.triangles,
+        tuple(statistics.warnings),
     )
 
 
 @dataclass(frozen=True)
 class SceneReports:
-    """All that is kept of a scene; replaced as a whole, so that a panel reads it while a render records."""
+    """Reports of a scene. They are replaced as a whole, so that panels read them while a render records."""
 
     finals: tuple[RenderReport, ...] = ()
-    """The newest first."""
+    """Final renders, the newest first."""
     viewport: RenderReport | None = None
     latest: RenderReport | None = None
     error: str = ""
-    """Why the last final render gave no picture."""
+    """Why the last final render has no picture; empty if it has one."""
     viewport_error: str = ""
-    """Why viewports cannot show the scene as it is now."""
+    """Why viewports cannot show the scene as it is now; empty if they can."""
 
 
 _EMPTY = SceneReports()
@@ -124,7 +105,7 @@ _lock = threading.Lock()
 
 
 def record(scene_uid: int, report: RenderReport) -> None:
-    """Keep a report for the scene of that session_uid; a viewport's replaces its last one. From any thread."""
+    """Keep a report of the scene with this session_uid; a viewport's replaces its last one. Any thread may call it."""
     report = replace(
         report,
         warnings=tuple(report.warnings[:WARNINGS_KEPT]),
@@ -140,13 +121,13 @@ def record(scene_uid: int, report: RenderReport) -> None:
 
 
 def record_error(scene_uid: int, text: str) -> None:
-    """Keep why a final render failed until one succeeds."""
+    """Keep why a final render has failed, until one succeeds."""
     with _lock:
         _keep(scene_uid, replace(_reports.get(scene_uid, _EMPTY), error=text))
 
 
 def record_viewport_error(scene_uid: int, text: str) -> None:
-    """Keep why viewports cannot show a scene; "" once they can."""
+    """Keep why viewports cannot show a scene; "" if they can."""
     with _lock:
         _keep(scene_uid, replace(_reports.get(scene_uid, _EMPTY), viewport_error=text))
 

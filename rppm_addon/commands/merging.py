@@ -11,6 +11,7 @@ import numpy as np
 
 from ..denoising.denoiser import Denoiser
 from ..denoising.places import library_places
+from ..integrator.film.film import exposed
 from ..pictures import FilePicture, PictureName, refuse_spoiled, standard_view, write_multilayer_exr
 from ..scene.errors import CheckpointError
 from ..scene.storage.fingerprint import settings_of_plain
@@ -20,7 +21,6 @@ from ..session.checkpoints.continuation import Pause
 from ..session.render.denoised_pictures import finished_frame
 from ..session.render.frame_passes import frame_passes
 from ..session.render.merged_passes import MergedPasses
-from ..session.render.renderer import exposed
 from ..session.render.results import Frame
 from .picture_files import write_png
 from .picture_set import described, metadata_of, path_of_picture

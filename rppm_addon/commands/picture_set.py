@@ -15,7 +15,7 @@ from .recorder import RenderRecorder, RenderRequest
 from .terminal.progress_bar import PartBar, ProgressBar
 
 if TYPE_CHECKING:
-    from ..session.render.renderer import Frame, Progress, RenderResult
+    from ..session.render.results import Frame, Progress, RenderResult
 
 _UNFIT_FOR_FILES = re.compile(r"[^\w-]+")
 

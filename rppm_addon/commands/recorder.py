@@ -11,14 +11,15 @@ from typing import TYPE_CHECKING
 
 from ..pictures import Placement, refuse_spoiled, standard_view, write_exr
 from ..scene import RenderSettings, Scene
-from ..scene.common.quantities import clock_text, count_text, noise_text
+from ..scene.common.quantities import count_text
 from ..session.checkpoints.checkpoint_writer import CheckpointWriter, attributes_of, placement_of
 from ..session.render.observers import RenderObserver
 from .picture_files import write_png
 from .terminal.progress_bar import PartBar, ProgressBar
+from .terminal.progress_line import ProgressLine
 
 if TYPE_CHECKING:
-    from ..session.render.renderer import Frame, Progress, RenderResult
+    from ..session.render.results import Frame, Progress, RenderResult
 
 _NO_ITERATION_LIMIT = 1 << 30
 _LEAST_TIME_LIMIT = 1e-3
@@ -43,7 +44,7 @@ class RenderRequest:
 
 
 class RenderRecorder(RenderObserver):
-    """Applies a request to a render and keeps what is worth reporting.
+    """Applies a request to a render, and keeps its result and report.
 
     The clock of --seconds and --snapshots starts with on_scene, so that making the renderer,
     loading programs and building the structure count.
@@ -63,23 +64,20 @@ class RenderRecorder(RenderObserver):
         self.scene_time = 0.0
         """time.perf_counter() at which the scene was there; 0 before."""
         self.renderer_seconds = 0.0
-        """From the scene to the renderer, part of ``seconds``."""
+        """Seconds from the scene to the renderer, part of ``seconds``."""
         self.seconds = 0.0
-        """From the scene to the result."""
+        """Seconds from the scene to the result."""
         self.snapshots_written: list[dict[str, object]] = []
         self.scene: Scene | None = None
-        self._bar = bar
+        self._line = ProgressLine(bar)
         self._should_stop = should_stop
         self._write_png_file = write_png_file
         self._keeper = keeper
-        self._progress: Progress | None = None
-        self._first_iteration: int | None = None
-        """Where the render has begun."""
 
     @property
     def has_samples(self) -> bool:
-        """Whether there are some of this render."""
-        return self._progress is not None and self._progress.iteration > (self._first_iteration or 0)
+        """Whether the render has completed an iteration."""
+        return self._line.has_samples
 
     def on_scene(self, scene: Scene) -> bool:
         """As RenderObserver has it."""
@@ -92,7 +90,7 @@ class RenderRecorder(RenderObserver):
         if self._keeper is not None:
             iterations = None if self.request.seconds is not None else scene.settings.iterations
             self.continuation = self._keeper.begin(scene, iterations)
-        self._bar.show(0.0, "preparing the device")
+        self._line.show_step("preparing the device")
         return True
 
     def on_start(self, scene: Scene) -> None:
@@ -102,27 +100,11 @@ class RenderRecorder(RenderObserver):
         if self.request.seconds is not None:
             limit = max(self.request.seconds - self.renderer_seconds, _LEAST_TIME_LIMIT)
             scene.settings = dataclasses.replace(scene.settings, time_limit=limit, iterations=_NO_ITERATION_LIMIT)
-        self._bar.show(0.0, "loading programs, building the structure")
+        self._line.show_step("loading programs, building the structure")
 
     def on_progress(self, progress: "Progress") -> None:
         """As RenderObserver has it."""
-        self._progress = progress
-        if self._first_iteration is None:
-            self._first_iteration = progress.iteration
-        words = f"sample {progress.iteration}"
-        fraction = progress.fraction
-        elapsed = time.perf_counter() - self.scene_time
-        if self.request.seconds is not None:
-            fraction = elapsed / self.request.seconds
-        else:
-            words += f" of {progress.iterations}"
-        words += f", {count_text(progress.photons)} photons"
-        if progress.noise > 0.0:
-            words += f", noise {noise_text(progress.noise, progress.noise_threshold)}"
-        words += f", {elapsed:.1f} s"
-        if progress.remaining_seconds is not None:
-            words += f", {clock_text(progress.remaining_seconds)} left"
-        self._bar.show(fraction, words)
+        self._line.show(progress, time.perf_counter() - self.scene_time, self.request.seconds)
 
     def should_stop(self) -> bool:
         """As RenderObserver has it."""
@@ -132,7 +114,7 @@ class RenderRecorder(RenderObserver):
         """As RenderObserver has it."""
         mark = self.request.snapshots[len(self.snapshots_written)]
         path = self.request.snapshot_path(mark)
-        progress = self._progress
+        progress = self._line.progress
         entry: dict[str, object] = {
             "mark": mark,
             "seconds": time.perf_counter() - self.scene_time,
@@ -194,7 +176,11 @@ class RenderRecorder(RenderObserver):
         """Metadata of the EXR of a finished render."""
         statistics = self.result.statistics
         return picture_metadata(
-            statistics.iterations, statistics.photons, self.seconds, statistics.device, statistics.radius_meters
+            statistics.iterations,
+            statistics.photons,
+            self.seconds,
+            statistics.device,
+            statistics.photon_statistics.radius_meters,
         )
 
     def report(self) -> dict[str, object]:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Learning from iterations for later ones: how wide the radii have to be, and where photons are sent."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,19 +10,8 @@ from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.photon_counts import NoiseSamples, NoiseVariances, PhotonCounts, camera_cost, photon_cost
 from .common.require import require
-from .density_estimation.radii import (
-    Radii,
-    expected_photons,
-    fitted_wide_radius,
-    most_radius_factor,
-    photons_found,
-    photons_found_by_gathering,
-    radius_in_pixels,
-    radius_limits,
-    shrinkage,
-    wide_radius,
-    widest_radius,
-)
+from .density_estimation.radii import Radii
+from .density_estimation.radius_schedule import RadiusSchedule
 from .density_estimation.stored_photons import PhotonList
 from .device_scene.stage_context import StageContext
 from .lights.lights import Lights
@@ -36,12 +24,8 @@ leave, rays find that light as well as photons or better."""
 _LEAST_UNCOVERED = 0.02
 """Least fraction of the gathering rays leaving the scene that pass no portal, for photons to share the world's direct
 light. Where more rays pass portals, shadow rays find nearly all of that light there."""
-
-
 _WEIGHED_AT = 64
 """The iteration with whose radii the noise of photons is weighed."""
-_PHOTONS_OF_DISKS, _FEWEST_OF_DISKS = 0.25, 1 << 11
-"""Photons a pixel, and at all, with which the wide radius holds the expected number: of fewer it holds fewer."""
 
 
 @dataclass(frozen=True)
@@ -61,52 +45,34 @@ def may_share_world_light(context: StageContext) -> bool:
 
 
 class Learning:
-    """The radii of a picture's iterations. They begin with what the pilot view shows."""
+    """Radii and photons of a picture's iterations. Those of the first follow from the pilot view."""
 
     def __init__(self, context: StageContext, pilot: PilotView) -> None:
-        footprints = pilot.footprints
-        settings, camera, geometry = context.settings, context.scene.camera, context.geometry
-        self._geometry = geometry
-        self._alpha = settings.alpha
-        self._gathers = context.gathers
-        self._expected = expected_photons(context.gathers)
-        self._scale = radius_in_pixels(settings, camera)
-        self._most_factor = most_radius_factor(settings)
-        self._size = camera.resolution
-        self.leaves_importon = footprints > 0
+        settings, camera = context.settings, context.scene.camera
+        self.leaves_importon = pilot.footprints > 0
         """(rows, columns) of the pilot view."""
-        self.limits = radius_limits(settings, footprints, geometry.radius)
-        """r_min and r_max of the first iteration, meters."""
-        self.widest_radius = widest_radius(footprints, geometry.bounds_low, geometry.bounds_high)
-        self._automatic = settings.photons == 0
+        self.radius_schedule = RadiusSchedule(
+            settings, camera, context.geometry, pilot.footprints, context.scene.photon_count, context.gathers
+        )
+        self._size = camera.resolution
+        self.weighs_noise = settings.photons == 0 and context.gathers
+        """Whether the number of photons follows the noise. Without final gather, all that is seen of light from other
+        surfaces would be blotches of fewer photons."""
         self.photon_counts = PhotonCounts((context.scene.photon_count,))
-        columns, rows = camera.resolution
-        of_disks = max(_PHOTONS_OF_DISKS * columns * rows, _FEWEST_OF_DISKS)
-        self._photons_of_disks = min(of_disks, context.scene.photon_count)
         self.photon_noise = NoiseVariances()
         self.rest: np.ndarray | None = None
         """(rows, columns) float32, where photons are automatic: luminance of samples of the last iteration that was
         learned from, without that of photons."""
         leaves_little = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
         self._shares_world_light = leaves_little and pilot.uncovered_fraction >= _LEAST_UNCOVERED
-        self.wide_radius = 0.0
-        """Radius over which global photons are spread, meters, before it shrinks: that of the first iteration. Known
-        once the photons of that iteration are."""
         self.global_photons_found: float | None = None
-        """Result of photons_found, or photons_found_by_gathering, for the last iteration; None if no photons were
-        counted."""
+        """Result of RadiusSchedule.photons_found for the last iteration; None if no photons were counted."""
 
     def radii_for(self, iteration: Iteration, listed: PhotonList) -> Radii:
         """Radii of an iteration whose stored photons are known."""
         if iteration.number == 1:
-            bounds = self._geometry.bounds_low, self._geometry.bounds_high
-            self.wide_radius = min(wide_radius(listed.global_photon_count, self._expected, *bounds), self.widest_radius)
-        return self.radii(iteration.number)
-
-    def radii(self, number: int) -> Radii:
-        """Return the radii of the iteration of this number, from 1, as far as they are known."""
-        shrunk = shrinkage(number, self._alpha)
-        return Radii(*self.limits, self.wide_radius, self._scale, self._most_factor, shrunk)
+            self.radius_schedule.begin(listed.global_photon_count)
+        return self.radius_schedule.radii(iteration.number)
 
     def photon_fraction(self, iteration: Iteration) -> float:
         """Photons of an iteration over those of the first."""
@@ -130,15 +96,7 @@ class Learning:
             if findings:
                 taken = np.concatenate([band.photons_taken for band in findings])
                 counts = taken[at_pixels(self.leaves_importon, *self._size), 0]
-                self.global_photons_found = (
-                    photons_found_by_gathering(counts) if self._gathers else photons_found(counts)
-                )
-
-    @property
-    def weighs_noise(self) -> bool:
-        """Whether the number of photons follows the noise: without final gather all that is seen of light from other
-        surfaces would be blotches of fewer photons."""
-        return self._automatic and self._gathers
+                self.global_photons_found = self.radius_schedule.photons_found(counts)
 
     def weigh_noise(
         self,
@@ -153,7 +111,8 @@ class Learning:
         if self.rest is None:
             self.photon_noise = self.photon_noise.with_first(found)
         else:
-            growth = (shrinkage(iteration.number, self._alpha) / shrinkage(_WEIGHED_AT, self._alpha)) ** 2
+            shrinkage = self.radius_schedule.shrinkage
+            growth = (shrinkage(iteration.number) / shrinkage(_WEIGHED_AT)) ** 2
             self.photon_noise = self.photon_noise.with_next(iteration.photon_count, found, self.rest, growth)
         self.rest = found.rest.astype(np.float32)
         pairs = sum(int(band.photons_taken.sum(dtype=np.int64)) for band in findings)
@@ -163,13 +122,9 @@ class Learning:
         self.photon_counts = self.photon_counts.followed_by(later)
 
     def learn(self, context: StageContext, number: int) -> None:
-        """Put to use what the iterations up to this number have tallied."""
+        """Adapt the guide and the radii to what the iterations up to this number have tallied."""
         with context.timers.stage("learning"):
-            gain = context.lights.learn(self.photon_counts.of(number + 1))
-            shrunk = self.wide_radius * shrinkage(number, self._alpha)
-            # Fewer photons make noise, which is weighed, and not wider disks, of which nobody would know the bias.
-            expected = self._expected * min(self.photon_counts.of(number + 1) / self._photons_of_disks, 1.0)
-            # Few photons make bold promises: the radius is at most halved before they are kept.
-            fitted = fitted_wide_radius(shrunk, expected, require(self.global_photons_found))
-            self.wide_radius = min(fitted / math.sqrt(min(gain, 4.0)), self.widest_radius)
+            photon_count = self.photon_counts.of(number + 1)
+            gain = context.lights.learn(photon_count)
+            self.radius_schedule.fit(number, require(self.global_photons_found), photon_count, gain)
             self.global_photons_found = None

@@ -170,7 +170,7 @@ class ProgressivePhotonMapper:
     @property
     def splat_radii(self) -> tuple[float, float]:
         """r_max of the current iteration and the wide radius of global photons, meters."""
-        radii = self.learning.radii(max(self.iteration, 1)).splats
+        radii = self.learning.radius_schedule.radii(max(self.iteration, 1)).splats
         return radii.narrow, radii.wide
 
     def photons_emitted(self, iterations: int) -> int:

@@ -64,7 +64,7 @@ def read_state(stages: StageSet, lights: Lights, learning: Learning, iteration: 
         iteration=iteration,
         photon_counts=learning.photon_counts,
         photon_noise=learning.photon_noise,
-        wide_radius=learning.wide_radius,
+        wide_radius=learning.radius_schedule.wide_radius,
         global_photons_found=learning.global_photons_found,
         radiance=film.read_radiance(),
         passes=film.read_passes(),
@@ -109,4 +109,5 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
     stages.caustic_radii.restore(state.radius_factors)
     learning.photon_counts, learning.photon_noise = state.photon_counts, state.photon_noise
     learning.rest = state.rest
-    learning.wide_radius, learning.global_photons_found = state.wide_radius, state.global_photons_found
+    learning.radius_schedule.wide_radius = state.wide_radius
+    learning.global_photons_found = state.global_photons_found

@@ -16,7 +16,7 @@ from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import INTEGERS, NUMBERS, TEXTS, VALUES, as_json, changed_documents, damaged_bytes
 from rppm_addon.commands.farm.tasks import Task
 from rppm_addon.scene.errors import SettingsError
-from rppm_addon.session.render.results import Progress, RenderStatistics
+from rppm_addon.session.render.results import PhotonStatistics, Progress, RenderStatistics
 from rppm_addon.session.transport.arrays import pack, unpack
 from rppm_addon.session.transport.frames import FrameReader, FrameWriter
 from rppm_addon.session.transport.protocol import (
@@ -94,9 +94,13 @@ def test_records(data):
     good = data.draw(
         st.sampled_from(
             [
-                SessionStatus(source_watts={"Lamp": 5.0}, warnings=["w"]),
+                SessionStatus(
+                    progress=Progress(1, 2, 3.0, 4),
+                    photon_statistics=PhotonStatistics(0.1, source_watts={"Lamp": 5.0}),
+                    warnings=["w"],
+                ),
                 Progress(1, 2, 3.0, 4),
-                RenderStatistics(1, 2, 3.0, 4.0, "d", 5, 0.1, stage_seconds={"a": 1.0}),
+                RenderStatistics(1, 2, 3.0, 4.0, "d", 5, PhotonStatistics(0.1), stage_seconds={"a": 1.0}),
             ]
         )
     )

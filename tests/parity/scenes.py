@@ -20,7 +20,8 @@ from mathutils import Matrix, Vector
 
 from rppm_addon.blender.export import export_scene
 from rppm_addon.scene import Scene
-from rppm_addon.session.render.renderer import Renderer, RenderStatistics
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.render.results import RenderStatistics
 
 from . import references
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from support.floor import floor_scene
 
-from rppm_addon.session.transport.client import RendererProcess, Timeouts
+from rppm_addon.session.client.client import RendererProcess, Timeouts
 
 FAKE = Path(__file__).with_name("fake_renderer.py")
 

@@ -19,11 +19,11 @@ from rppm_addon.scene.settings import DenoisingInputPasses
 from rppm_addon.session.checkpoints.checkpoint_file import write_checkpoint
 from rppm_addon.session.checkpoints.checkpoint_writer import still_render
 from rppm_addon.session.checkpoints.continuation import Continuation
+from rppm_addon.session.client.remote_rendering import RemoteRenderer
 from rppm_addon.session.placeholders.known_programs import KnownPrograms
 from rppm_addon.session.render.render_job import RenderJob
 from rppm_addon.session.render.renderer import Renderer
 from rppm_addon.session.transport.arrays import unpack
-from rppm_addon.session.transport.remote_rendering import RemoteRenderer
 from rppm_addon.session.transport.sessions import SessionKind
 from rppm_addon.session.worker.rendering import Rendering
 
@@ -136,7 +136,7 @@ def test_in_the_renderers_process(renderer, start):
     scene = floor(denoising_input_passes="RGB")
     here = renderer.render(scene).frame
     process = start()
-    process.denoisers = PLACES
+    process.launcher.denoisers = PLACES
     found = RemoteRenderer(process, SessionKind.FINAL).render(scene, RenderJob())
     np.testing.assert_array_equal(found.frame.combined, here.combined)
     np.testing.assert_array_equal(found.frame.passes["Noisy Image"], here.passes["Noisy Image"])

@@ -11,7 +11,7 @@ def run(share, turns, costs, weights):
     spent = dict.fromkeys(costs, 0.0)
     for _ in range(turns):
         chosen = share.next(costs)
-        share.took(chosen, costs[chosen], weights[chosen])
+        share.charge(chosen, costs[chosen], weights[chosen])
         spent[chosen] += costs[chosen]
     return spent
 
@@ -44,7 +44,7 @@ def test_pauses_are_not_owed():
 def test_who_pauses_after_a_long_turn_still_owes_it():
     share = FairShare()
     share.next(["a", "b"])
-    share.took("a", 100.0, 1.0)
+    share.charge("a", 100.0, 1.0)
     assert run(share, 50, {"b": 1.0}, {"b": 1.0})["b"] == 50.0
     assert run(share, 50, {"a": 1.0, "b": 1.0}, {"a": 1.0, "b": 1.0})["b"] >= 49.0
 

@@ -11,11 +11,12 @@ import pytest
 from rppm_addon.gl.context.driver_errors import OUT_OF_MEMORY, DriverErrors
 from rppm_addon.gl.context.losses import LossWatch
 from rppm_addon.scene.errors import DeviceLostError
-from rppm_addon.session.render import renderer as renderer_module
+from rppm_addon.session.checkpoints import checkpoint_schedule
+from rppm_addon.session.checkpoints.continuation import MOST_LOSSES
+from rppm_addon.session.client.client import ProcessState
+from rppm_addon.session.client.remote_rendering import RemoteRenderer
 from rppm_addon.session.render.render_job import RenderJob
-from rppm_addon.session.render.renderer import MOST_LOSSES, Renderer
-from rppm_addon.session.transport.client import ProcessState
-from rppm_addon.session.transport.remote_rendering import RemoteRenderer
+from rppm_addon.session.render.renderer import Renderer
 from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, scene_of, wait_until
@@ -29,9 +30,9 @@ class Losses:
     def __init__(self, monkeypatch):
         self.due = False
         monkeypatch.setattr(LossWatch, "check", self._check)
-        monkeypatch.setattr(renderer_module, "FIRST_SAFEGUARD_SECONDS", 0.0)
-        monkeypatch.setattr(renderer_module, "SAFEGUARD_SECONDS", 0.0)
-        monkeypatch.setattr(renderer_module, "SAFEGUARD_MOST_TIME", 1e6)
+        monkeypatch.setattr(checkpoint_schedule, "FIRST_SAFEGUARD_SECONDS", 0.0)
+        monkeypatch.setattr(checkpoint_schedule, "SAFEGUARD_SECONDS", 0.0)
+        monkeypatch.setattr(checkpoint_schedule, "SAFEGUARD_MOST_TIME", 1e6)
 
     def _check(self):
         if self.due:
@@ -109,18 +110,21 @@ def test_a_device_that_is_lost_again_and_again_ends_the_render(monkeypatch):
 
 
 class KillingJob(RenderJob):
-    """Kills the process once it has handed over what another one needs, if ``process`` is given."""
+    """Kills the process once it has handed over what another one needs, if ``process`` is given.
+
+    A process hands its state over after the first iteration that ends after FIRST_SAFEGUARD_SECONDS: the state is there
+    with the progress of the next one.
+    """
 
     def __init__(self, process=None):
-        self.process, self.iterations = process, []
+        self.process, self.iterations, self.late = process, [], 0
 
     def on_progress(self, progress):
         self.iterations.append(progress.iteration)
-        if self.process is not None:
-            (session,) = self.process.sessions.values()
-            if session._kept is not None:
-                self.process = None
-                os.kill(children().pop(), signal.SIGKILL)
+        self.late += progress.elapsed_seconds > checkpoint_schedule.FIRST_SAFEGUARD_SECONDS
+        if self.process is not None and self.late > 1:
+            self.process = None
+            os.kill(children().pop(), signal.SIGKILL)
         return False
 
 

@@ -10,10 +10,10 @@ import pytest
 from support.sent_members import watch_sent_members
 
 from rppm_addon.scene.errors import SettingsError
+from rppm_addon.session.client.client import ProcessState
+from rppm_addon.session.client.remote_rendering import RemoteRenderer
 from rppm_addon.session.render.render_job import RenderJob
 from rppm_addon.session.render.renderer import Renderer
-from rppm_addon.session.transport.client import ProcessState
-from rppm_addon.session.transport.remote_rendering import RemoteRenderer
 from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, open_blocks, scene_of, wait_until
@@ -87,7 +87,7 @@ def test_who_is_stopped_does_not_stop_the_next(remote, scene, pictures):
     assert result.stopped and 2 <= result.statistics.iterations < 100000
     shows(remote, scene, 0.3, pictures)
     # Told too late: the render it was meant for has ended.
-    remote._idle.want_picture()
+    remote._idle.request_picture()
     remote._idle.stop()
     shows(remote, scene, 0.6, pictures)
     # Before there was anything to see, nobody waits for the process.

@@ -13,9 +13,10 @@ import pytest
 
 from rppm_addon.scene import Image
 from rppm_addon.scene.errors import RendererError
+from rppm_addon.session.client import launcher, remote_rendering
+from rppm_addon.session.client.client import MOST_RESTARTS, ProcessState
 from rppm_addon.session.render.render_job import RenderJob
-from rppm_addon.session.transport import arrays, client, remote_rendering
-from rppm_addon.session.transport.client import MOST_RESTARTS, ProcessState
+from rppm_addon.session.transport import arrays
 from rppm_addon.session.transport.protocol import ProtocolError
 from rppm_addon.session.transport.sessions import SessionKind
 
@@ -82,7 +83,7 @@ def test_what_another_process_would_not_change_is_tried_once(start, fault, text)
 
 def test_a_program_that_is_not_there(start, tmp_path):
     process = start()
-    process._python = [str(tmp_path / "python")]
+    process.launcher.python = [str(tmp_path / "python")]
     viewport(process)
     assert "cannot be started" in failed(process)
 
@@ -110,7 +111,7 @@ def test_the_log_has_what_the_process_printed(start):
 
 
 def test_the_log_does_not_grow_without_end(start, monkeypatch):
-    monkeypatch.setattr(client, "LARGEST_LOG", 1 << 20)
+    monkeypatch.setattr(launcher, "LARGEST_LOG", 1 << 20)
     process = start("fills_the_log", ping=0.01, leave=0.1)
     viewport(process)
     wait_until(process.log_path.exists)

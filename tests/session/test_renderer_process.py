@@ -15,10 +15,10 @@ import pytest
 
 from rppm_addon.scene import Movement, Shutter
 from rppm_addon.scene.errors import RendererError, SettingsError
+from rppm_addon.session.client.client import ProcessState
+from rppm_addon.session.client.remote_rendering import RemoteRenderer, render
 from rppm_addon.session.render.render_job import RenderJob
 from rppm_addon.session.render.renderer import Renderer
-from rppm_addon.session.transport.client import ProcessState
-from rppm_addon.session.transport.remote_rendering import RemoteRenderer, render
 from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, is_running, scene_of, shared_files, wait_until
@@ -69,8 +69,9 @@ def test_a_viewport_settles_on_the_picture_of_a_render(start):
     wait_until(lambda: session.status.settled)
     assert np.array_equal(session.newest().combined, expected(scene).combined)
     status = session.status
-    assert (status.generation, status.iteration, status.iterations, status.error) == (1, 3, 3, "")
-    assert status.photons == 3 * scene.settings.photons and status.memory_bytes > 0 and status.radius_meters > 0.0
+    assert (status.generation, status.iteration, status.progress.iterations, status.error) == (1, 3, 3, "")
+    assert status.progress.photons == 3 * scene.settings.photons and status.progress.memory_bytes > 0
+    assert status.photon_statistics.radius_meters > 0.0
     assert process.device.name and float(process.device.version) >= 4.3
     darker = dataclasses.replace(scene, exposure=0.5)
     session.show(darker, 2, False)
@@ -106,7 +107,7 @@ def test_of_many_scenes_the_last_is_shown(start):
             shown.add(frame.generation)
     wait_until(lambda: session.status.generation == 299 and session.status.settled)
     assert np.array_equal(session.newest().combined, expected(scene_of(2, exposure=299)).combined)
-    assert session._sent < 299 and len(shown) < 299
+    assert len(shown) < 299
 
 
 def test_pause(start):
@@ -179,7 +180,7 @@ _PARENT = """
 import json, sys, time
 from pathlib import Path
 sys.path[:0] = [{root!r}, {tests!r}]
-from rppm_addon.session.transport.client import RendererProcess
+from rppm_addon.session.client.client import RendererProcess
 from rppm_addon.session.transport.sessions import SessionKind
 from session.conftest import children, scene_of, wait_until
 process = RendererProcess([sys.executable, "-I"], sys.path, Path(sys.argv[1]))
@@ -377,7 +378,7 @@ def test_messages_for_a_session_that_was_closed(start):
         viewport, final = process.open(SessionKind.VIEWPORT), process.open(SessionKind.FINAL)
         viewport.show(scene_of(), 1, False)
         final.show(scene_of(size=200), 1, False)
-        final.want_picture()
+        final.request_picture()
         wait_until(viewport.newest)
         viewport.close()
         final.close()
@@ -396,7 +397,7 @@ def test_messages_for_a_session_that_was_closed(start):
 
 def test_a_log_that_cannot_be_written(start):
     process = start()
-    process.log_path = Path("/proc/renderer/renderer.log")
+    process.launcher.log_path = Path("/proc/renderer/renderer.log")
     session = process.open(SessionKind.VIEWPORT)
     session.show(scene_of(), 1, False)
     frame_of(session, 1)

@@ -16,6 +16,8 @@ from rppm_addon.session.placeholders.known_programs import KnownPrograms
 from rppm_addon.session.placeholders.stand_ins import StandIns
 from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
 
+from .frame_receiver import FrameReceiver
+
 
 class Compiling:
     """In a library's place: programs that are compiled until ``ready`` names the kinds of their nodes."""
@@ -87,7 +89,7 @@ def test_few_programs_are_waited_for_unless_the_stand_ins_are_there(scene):
 
 def test_the_picture_begins_anew_with_what_is_ready(monkeypatch):
     """And ends as that of a scene which nothing stood in for."""
-    library, known, sent = Compiling(), KnownPrograms(), []
+    library, known = Compiling(), KnownPrograms()
     real, scene = ProgramLibrary(context := Context.create()), floor_scene()
     scene.settings = dataclasses.replace(scene.settings, iterations=2)
     # Of the structure that faces without a material have: nothing is compiled for it.
@@ -99,26 +101,18 @@ def test_the_picture_begins_anew_with_what_is_ready(monkeypatch):
     for waits in (False, True):
         if waits:
             monkeypatch.setattr(real, "has_stand_in", library.has_stand_in)
-        viewing = ViewportRenderer(
-            context, real, Denoiser([]), lambda kind, **content: sent.append((kind, content)), known
-        )
-        shown = []
-
-        def keep(combined, *_, shown=shown):
-            shown.append(combined.copy())
-
-        monkeypatch.setattr(viewing, "_send_frame", keep)
-        viewing.show(scene, 1, False)
-        while viewing.busy:
-            viewing.run_slice()
-            if waits and len(shown) == 2:
+        sent = FrameReceiver()
+        viewport = ViewportRenderer(context, real, Denoiser([]), sent, known)
+        viewport.show(scene, 1, False)
+        while viewport.busy:
+            viewport.run_slice()
+            if waits and len(sent.frames) == 2:
                 library.ready = {"bsdf_diffuse"}
-        pictures[waits] = shown
-        viewing.release()
+        pictures[waits] = [frame.combined for frame in sent.frames if frame.progress]
+        viewport.release()
     real.release()
     context.release()
-    statuses = [content["status"] for kind, content in sent if kind == "status"]
-    assert {status["programs_stood_in_for"] for status in statuses} == {0, 1}
-    assert not any(status["settled"] for status in statuses if status["programs_stood_in_for"])
+    assert {status["compilation"]["stood_in_for"] for status in sent.statuses} == {0, 1}
+    assert not any(status["settled"] for status in sent.statuses if status["compilation"]["stood_in_for"])
     assert not pictures[True][1][:, :8, :3].any() and pictures[True][-1][:, :8, :3].any()
     np.testing.assert_array_equal(pictures[True][-1], pictures[False][-1])

@@ -2,22 +2,40 @@
 """A render with a time limit ends with the iteration that is nearest to it, and hardly later."""
 
 import itertools
+import time
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from rppm_addon.scene import Camera, RenderSettings, Scene
+from rppm_addon.scene.settings import DensityEstimation, FirstPhotonHits
 from rppm_addon.session.checkpoints.continuation import Continuation
-from rppm_addon.session.render import renderer
-from rppm_addon.session.render.renderer import SlicedRender
-from rppm_addon.session.render.results import RenderResult, RenderStatistics
+from rppm_addon.session.render.render_loop import RenderLoop
 
 STEPS = 20
 
 
+class Film:
+    """A film whose pixels all have the number of times that it was read."""
+
+    def __init__(self):
+        self.reads = 0
+        self.found_passes = ()
+
+    def read_radiance(self):
+        self.reads += 1
+        return np.full((8, 8, 4), self.reads, np.float32)
+
+    def read_passes(self):
+        return {}
+
+
 class Clock:
-    """Stands in for the module's time, and for a mapper that takes it."""
+    """Stands in for the clock, and for a mapper that takes time."""
+
+    build_seconds, triangle_count = 0.5, 0
+    density_estimation, first_photon_hits = DensityEstimation.GRID, FirstPhotonHits.TRACED
 
     def __init__(self, seconds, photons=(8,)):
         """Seconds and photons of the first iterations; the last of each is that of all that follow."""
@@ -25,8 +43,9 @@ class Clock:
         self._seconds = itertools.chain(seconds, itertools.repeat(seconds[-1]))
         self._photons = photons
         self.timers = SimpleNamespace(reset=lambda: None, seconds={})
-        self.film, self.film_iterations = None, 0
+        self.film, self.film_iterations = Film(), 0
         self.splat_radii = (1.0, 1.0)
+        self.memory_bytes = self.source_watts = self.source_photons = {}
 
     def perf_counter(self):
         return self.now
@@ -36,6 +55,9 @@ class Clock:
 
     def photons_emitted(self, iterations):
         return sum(self._photons[min(number, len(self._photons) - 1)] for number in range(iterations))
+
+    def flux_balance(self):
+        return {"emitted": 1.0, "lost": 0.0}
 
     def state(self):
         return self.film_iterations
@@ -54,22 +76,12 @@ def run(monkeypatch):
     """Runs a render by a clock; returns the render, its seconds and the marks of its snapshots."""
 
     def run_by(clock, limit, continuation=None):
-        monkeypatch.setattr(renderer, "time", clock)
-        frames = iter(range(1000))
-        monkeypatch.setattr(renderer, "read_frame", lambda *_: next(frames))
-        result = SlicedRender.result
-
-        def plain_result(self, stopped):
-            if self._before is not None or self.iterations == 0:
-                return result(self, stopped)
-            return RenderResult(self.frame(), RenderStatistics(self.iterations, 0, 0, 0, "", 0, 0), stopped)
-
-        monkeypatch.setattr(SlicedRender, "result", plain_result)
+        monkeypatch.setattr(time, "perf_counter", clock.perf_counter)
         camera = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
         scene = Scene(camera, settings=RenderSettings(iterations=70, time_limit=float(limit)))
         marks = []
         context = SimpleNamespace(finish=lambda: None, information=SimpleNamespace(label="a device"))
-        render = SlicedRender(
+        render = RenderLoop(
             context, clock, scene, snapshots=[1.0, 9.9, 10.0, 1e6],
             on_snapshot=lambda mark, _: marks.append(mark), continuation=continuation,
         )  # fmt: skip
@@ -119,7 +131,7 @@ def test_an_iteration_far_longer_than_expected_is_given_up(run):
     result = render.result(stopped=False)
     assert result.statistics.iterations == 8
     assert result.statistics.seconds == pytest.approx(seconds)
-    assert result.frame == render.frame()  # that of eight iterations: nothing is read of the film that is unfinished
+    assert result.frame is render.frame()  # that of eight iterations: nothing is read of the film that is unfinished
     assert marks == [1.0, 9.9, 10.0]
     render.keep()
     assert [pause.state for pause in kept] == [1]  # whole iterations, and not what was given up

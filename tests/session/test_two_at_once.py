@@ -7,9 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
+from rppm_addon.session.client.remote_rendering import RemoteRenderer
 from rppm_addon.session.render.render_job import RenderJob
 from rppm_addon.session.render.renderer import Renderer
-from rppm_addon.session.transport.remote_rendering import RemoteRenderer
 from rppm_addon.session.transport.sessions import SessionKind
 
 from .conftest import children, scene_of

@@ -11,46 +11,35 @@ from support.floor import floor_scene
 from rppm_addon.denoising.denoiser import Denoiser
 from rppm_addon.gl.context.context import Context
 from rppm_addon.gl.programs.programs import ProgramLibrary
+from rppm_addon.integrator.common.stage_sizes import StageSizes
+from rppm_addon.integrator.viewport.pictures import expected_bytes
 from rppm_addon.scene import Panorama, PanoramaKind
 from rppm_addon.scene.meshes import Dicing
 from rppm_addon.session.placeholders.known_programs import MOST_TRIANGLES, KnownPrograms
 from rppm_addon.session.viewport.viewport_renderer import ViewportRenderer
 
-
-class Sent:
-    """Messages that viewings have sent."""
-
-    def __init__(self):
-        self.messages = []
-
-    def __call__(self, kind, **content):
-        self.messages.append((kind, content))
-
-    @property
-    def frames(self):
-        """Generation and progress of each."""
-        return [(content["generation"], content["progress"]) for kind, content in self.messages if kind == "frame"]
-
-    @property
-    def compiled(self):
-        statuses = [content["status"] for kind, content in self.messages if kind == "status"]
-        return [status["programs_started"] for status in statuses if status["iteration"] == 0]
+from .frame_receiver import FrameReceiver
 
 
 @pytest.fixture
-def open_viewing():
+def known_programs():
+    return KnownPrograms()
+
+
+@pytest.fixture
+def open_viewport(known_programs):
     """A function that opens viewports of one process; they share what is compiled."""
     context = Context.create()
-    library, known, opened = ProgramLibrary(context), KnownPrograms(), []
+    library, opened = ProgramLibrary(context), []
 
-    def open_viewing():
-        sent = Sent()
-        opened.append(ViewportRenderer(context, library, Denoiser([]), sent, known))
+    def open_viewport():
+        sent = FrameReceiver()
+        opened.append(ViewportRenderer(context, library, Denoiser([]), sent, known_programs))
         return opened[-1], sent
 
-    yield open_viewing
-    for viewing in opened:
-        viewing.release()
+    yield open_viewport
+    for viewport in opened:
+        viewport.release()
     library.release()
     context.release()
 
@@ -61,115 +50,116 @@ def scene_of(**changes):
     return dataclasses.replace(scene, **changes)
 
 
-def run(viewing):
-    while viewing.busy:
-        viewing.run_slice()
+def run(viewport):
+    while viewport.busy:
+        viewport.run_slice()
 
 
-def last(viewing):
-    """The bytes of the last frame."""
-    height, width = 12, 16
-    return viewing._frames._slots.pixels[viewing._frames._sequence % 3][: 4 * width * height].tobytes()
+def compiled(sent):
+    """Programs that were compiled, by the statuses before the first iteration."""
+    return [status["compilation"]["started"] for status in sent.statuses if status["progress"] is None]
 
 
-def test_a_first_look_comes_before_anything_is_compiled(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    viewing.run_slice()
-    assert sent.frames == [(1, 0.0)]
-    assert viewing._library.started == 2  # what gathers triangles, and what draws
-    look = viewing._frames._slots.pixels[1][: 4 * 16 * 12].reshape(12, 16, 4)
+def test_a_first_look_comes_before_anything_is_compiled(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    viewport.run_slice()
+    assert sent.shown == [(1, 0.0)]
+    assert not sent.statuses  # which say what is compiled
+    look = sent.picture
     # The floor covers the left half.
     assert (look[:, :8, :3] > 0.1).all() and not look[:, 8:, :3].any()
-    run(viewing)
-    assert sent.frames[-1] == (1, 1.0) and sorted(sent.frames) == sent.frames
-    assert [progress for _, progress in sent.frames].count(0.0) == 1
-    assert sent.compiled == sorted(sent.compiled) and sent.compiled[-1] > 2
+    run(viewport)
+    assert sent.shown[-1] == (1, 1.0) and sorted(sent.shown) == sent.shown
+    assert [progress for _, progress in sent.shown].count(0.0) == 1
+    assert compiled(sent) == sorted(compiled(sent)) and compiled(sent)[-1] > 2
 
 
-def test_there_is_none_once_there_was_a_frame(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_there_is_none_once_there_was_a_frame(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     seen = len(sent.frames)
-    viewing.show(scene_of(exposure=0.5), 2, False)
-    run(viewing)
-    assert 0.0 not in [progress for _, progress in sent.frames[seen:]] and sent.frames[-1] == (2, 1.0)
+    viewport.show(scene_of(exposure=0.5), 2, False)
+    run(viewport)
+    assert 0.0 not in [progress for _, progress in sent.shown[seen:]] and sent.shown[-1] == (2, 1.0)
 
 
-def test_there_is_none_when_the_programs_are_ready(open_viewing):
+def test_there_is_none_when_the_programs_are_ready(open_viewport):
     for expected in (1, 0):
-        viewing, sent = open_viewing()
-        viewing.show(scene_of(), 1, False)
-        run(viewing)
-        assert [progress for _, progress in sent.frames].count(0.0) == expected
+        viewport, sent = open_viewport()
+        viewport.show(scene_of(), 1, False)
+        run(viewport)
+        assert [progress for _, progress in sent.shown].count(0.0) == expected
 
 
-def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewing):
-    viewing, _ = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewport, known_programs):
+    viewport, _ = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     scene = scene_of()
-    assert viewing._programs.cover(scene)
+    assert known_programs.cover(scene)
     glossy = dataclasses.replace(scene.materials[0], graph=dataclasses.replace(scene.materials[0].graph))
     glossy.graph.nodes = [dataclasses.replace(node, kind="bsdf_glossy") for node in glossy.graph.nodes]
-    assert not viewing._programs.cover(dataclasses.replace(scene, materials=[glossy]))
+    assert not known_programs.cover(dataclasses.replace(scene, materials=[glossy]))
     raised = dataclasses.replace(scene.materials[0], graph=copy.deepcopy(scene.materials[0].graph))
     raised.graph.displacement = raised.graph.add("displacement", "displacement", height=0.5)
     displaced = scene_of(materials=[raised])
-    assert not viewing._programs.cover(displaced)
-    other, _ = open_viewing()
+    assert not known_programs.cover(displaced)
+    other, _ = open_viewport()
     other.show(displaced, 1, False)
     run(other)
-    assert viewing._programs.cover(displaced)
+    assert known_programs.cover(displaced)
     divided = dataclasses.replace(scene.meshes[0], dicing=Dicing(1.0, True, False))
-    assert viewing._programs.cover(scene_of(meshes=[divided]))
-    assert not viewing._programs.cover(dataclasses.replace(displaced, meshes=[divided]))
+    assert known_programs.cover(scene_of(meshes=[divided]))
+    assert not known_programs.cover(dataclasses.replace(displaced, meshes=[divided]))
     many = MOST_TRIANGLES // scene.meshes[0].triangle_count + 1
-    assert not viewing._programs.cover(dataclasses.replace(scene, instances=scene.instances * many))
+    assert not known_programs.cover(dataclasses.replace(scene, instances=scene.instances * many))
 
 
-def test_panoramas_have_none(open_viewing):
-    viewing, sent = open_viewing()
+def test_panoramas_have_none(open_viewport):
+    viewport, sent = open_viewport()
     camera = dataclasses.replace(
         scene_of().camera, panorama=Panorama(PanoramaKind.EQUIRECTANGULAR), window=(0.0, 1.0, 0.0, 1.0)
     )
-    viewing.show(scene_of(camera=camera), 1, False)
-    run(viewing)
-    assert 0.0 not in [progress for _, progress in sent.frames] and sent.frames[-1] == (1, 1.0)
+    viewport.show(scene_of(camera=camera), 1, False)
+    run(viewport)
+    assert 0.0 not in [progress for _, progress in sent.shown] and sent.shown[-1] == (1, 1.0)
 
 
-def test_it_follows_the_view_while_programs_are_compiled(open_viewing):
-    viewing, sent = open_viewing()
+def test_it_follows_the_view_while_programs_are_compiled(open_viewport):
+    viewport, sent = open_viewport()
     scene = scene_of()
-    viewing.show(scene, 1, False)
-    viewing.run_slice()
+    viewport.show(scene, 1, False)
+    viewport.run_slice()
     moved = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, window=(-0.6, 0.4, -0.375, 0.375)))
-    viewing.expect(moved, 2)  # as the reading thread says, while the renderer takes no messages
-    viewing.run_slice()
-    assert sent.frames == [(1, 0.0), (2, 0.0)]
-    viewing.show(moved, 2, False)
-    run(viewing)
-    assert sorted(sent.frames) == sent.frames, "the view jumps back"
-    assert sent.frames[-1] == (2, 1.0)
-    other, other_sent = open_viewing()
+    viewport.expect(moved, 2)  # as the reading thread says, while the renderer takes no messages
+    viewport.run_slice()
+    assert sent.shown == [(1, 0.0), (2, 0.0)]
+    viewport.show(moved, 2, False)
+    run(viewport)
+    assert sorted(sent.shown) == sent.shown, "the view jumps back"
+    assert sent.shown[-1] == (2, 1.0)
+    other, other_sent = open_viewport()
     other.show(moved, 1, False)
     run(other)
-    assert (0.0 not in [progress for _, progress in other_sent.frames]) and last(viewing) == last(other)
+    assert (0.0 not in [progress for _, progress in other_sent.shown]) and np.array_equal(
+        sent.picture, other_sent.picture
+    )
 
 
-def test_a_viewport_is_done_with_its_noise(open_viewing):
-    viewing, sent = open_viewing()
+def test_a_viewport_is_done_with_its_noise(open_viewport):
+    viewport, sent = open_viewport()
     settings = dataclasses.replace(
         floor_scene().settings, iterations=1000, use_adaptive_sampling=True, adaptive_threshold=1.0,
         adaptive_min_samples=33,
     )  # fmt: skip
-    viewing.show(scene_of(settings=settings), 1, False)
-    run(viewing)
-    statuses = [content["status"] for kind, content in sent.messages if kind == "status"]
-    assert statuses[-1]["settled"] and statuses[-1]["iteration"] == 40
-    assert 0.0 < statuses[-1]["noise"] < statuses[-1]["noise_threshold"] == 1.0
-    assert sent.frames[-1] == (1, 1.0)
+    viewport.show(scene_of(settings=settings), 1, False)
+    run(viewport)
+    status = sent.statuses[-1]
+    assert status["settled"] and status["progress"]["iteration"] == 40
+    assert 0.0 < status["progress"]["noise"] < status["progress"]["noise_threshold"] == 1.0
+    assert sent.shown[-1] == (1, 1.0)
 
 
 def turned(scene, columns):
@@ -181,49 +171,42 @@ def turned(scene, columns):
     )
 
 
-def picture(viewing, sent):
-    """The frame that was sent last."""
-    frame = [content for kind, content in sent.messages if kind == "frame"][-1]
-    pixels = viewing._frames._slots.pixels[frame["slot"]]
-    return pixels[: 4 * 16 * 12].reshape(12, 16, 4).copy()
-
-
-def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_viewing):
-    viewing, sent = open_viewing()
+def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_viewport):
+    viewport, sent = open_viewport()
     scene = scene_of()
-    viewing.show(scene, 1, False)
-    run(viewing)
-    before, rendered = picture(viewing, sent), viewing._mapper.iteration
-    viewing.show(turned(scene, 2), 2, True)
-    viewing.run_slice()
-    assert sent.frames[-1] == (2, 0.0) and viewing._mapper.iteration <= rendered
-    moved = picture(viewing, sent)
+    viewport.show(scene, 1, False)
+    run(viewport)
+    before, rendered = sent.picture, len(sent.statuses)
+    viewport.show(turned(scene, 2), 2, True)
+    viewport.run_slice()
+    assert sent.shown[-1] == (2, 0.0) and len(sent.statuses) == rendered  # no iteration is done
+    moved = sent.picture
     np.testing.assert_allclose(moved[:, :5], before[:, 2:7], atol=2e-3)
-    viewing.show(turned(scene, 4), 3, True)
-    run(viewing)
-    generations = [generation for generation, _ in sent.frames]
+    viewport.show(turned(scene, 4), 3, True)
+    run(viewport)
+    generations = [generation for generation, _ in sent.shown]
     assert sorted(generations) == generations, "the view jumps back"
-    assert sent.frames[-1] == (3, 1.0)
-    other, other_sent = open_viewing()
+    assert sent.shown[-1] == (3, 1.0)
+    other, other_sent = open_viewport()
     other.show(turned(scene, 4), 1, False)
     run(other)
-    np.testing.assert_array_equal(picture(viewing, sent), picture(other, other_sent))
+    np.testing.assert_array_equal(sent.picture, other_sent.picture)
 
 
-def test_after_another_change_nothing_is_moved(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
+def test_after_another_change_nothing_is_moved(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
     seen = len(sent.frames)
-    viewing.show(turned(scene_of(exposure=0.5), 2), 2, True)
-    run(viewing)
-    assert 0.0 not in [progress for _, progress in sent.frames[seen:]]
+    viewport.show(turned(scene_of(exposure=0.5), 2), 2, True)
+    run(viewport)
+    assert 0.0 not in [progress for _, progress in sent.shown[seen:]]
 
 
-def test_the_memory_of_pictures_is_told(open_viewing):
-    viewing, sent = open_viewing()
-    viewing.show(scene_of(), 1, False)
-    run(viewing)
-    told = [content["status"]["memory_bytes"] for kind, content in sent.messages if kind == "status"][-1]
-    of_pictures = sum(viewing._viewport_pictures.memory_bytes.values())
-    assert of_pictures > 0 and told == sum(viewing._mapper.memory_bytes.values()) + of_pictures
+def test_the_memory_of_pictures_is_reported(open_viewport):
+    viewport, sent = open_viewport()
+    viewport.show(scene_of(), 1, False)
+    run(viewport)
+    reported = sent.statuses[-1]["progress"]["memory_bytes"]
+    of_pictures = reported - sum(viewport.mapper.memory_bytes.values())
+    assert 0 < of_pictures <= sum(expected_bytes(StageSizes(16, 12)).values())

@@ -3,7 +3,7 @@
 
 import pytest
 
-from rppm_addon.session.transport.child_process import ChildProcess
+from rppm_addon.session.client.child_process import ChildProcess
 
 
 def watch_sent_members(monkeypatch: pytest.MonkeyPatch) -> dict[tuple[int, int], set[str]]:

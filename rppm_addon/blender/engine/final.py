@@ -24,7 +24,7 @@ from .. import background
 from ..export import ExportStopped, Eye, FrameExporter, export_scene, is_blurred, views_of, wants_neighbors
 from ..export.camera.camera import frame_size
 from ..render_client import renderer_process, renderer_thread
-from ..reports import RenderKind, RenderReport, record, record_error
+from ..reports import final_report, record, record_error
 from . import broken_frames
 from .frame_reuse import reuse_previous_frame
 
@@ -99,7 +99,7 @@ def _render(
         _stamp(engine, scene, view.name, result.statistics)
     report_late_warnings(engine, result, scene, told)
     if result.statistics.iterations and not engine.is_preview:
-        record(depsgraph.scene.session_uid, _report_of(result.statistics, scene))
+        record(depsgraph.scene.session_uid, final_report(result.statistics, scene))
     observer.on_finish(result, scene)
 
 
@@ -164,31 +164,6 @@ def _check_size(engine: bpy.types.RenderEngine, render: bpy.types.RenderSettings
             f"the resolution has changed to {wanted[0]} x {wanted[1]} while Blender renders pictures of "
             f"{laid_out[0]} x {laid_out[1]}; change it before the render begins, or render such frames one at a time"
         )
-
-
-def _report_of(statistics: "RenderStatistics", scene: Scene) -> RenderReport:
-    """Return the figures of a final render that the panels show."""
-    width, height = scene.camera.resolution
-    return RenderReport(
-        RenderKind.FINAL,
-        width,
-        height,
-        scene.settings,
-        statistics.iterations,
-        statistics.photons,
-        statistics.seconds,
-        statistics.radius_meters,
-        sum(statistics.memory_bytes.values()),
-        statistics.build_seconds,
-        statistics.device,
-        statistics.triangles,
-        statistics.source_watts,
-        statistics.source_photons,
-        statistics.density_estimation,
-        statistics.first_photon_hits,
-        statistics.noise,
-        tuple(statistics.warnings),
-    )
 
 
 def render_scene(engine: bpy.types.RenderEngine, scene: Scene, job: RenderJob) -> "RenderResult":

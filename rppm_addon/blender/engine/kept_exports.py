@@ -24,7 +24,7 @@ def key_of(depsgraph: bpy.types.Depsgraph) -> _Key:
 
 
 def keep(key: _Key, sync: SceneSync) -> None:
-    """Keep what a viewport has exported, which from now on is told of all that changes."""
+    """Keep the export of a viewport, and note all changes for it from now on."""
     scene = sync.scene
     if scene is not None and _bytes_of(scene) > MOST_BYTES:
         return

@@ -9,7 +9,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ...scene import Camera, Material, Scene
-from ...session.transport.client import ProcessState
+from ...session.client.client import ProcessState
 from ..export import export_settings
 from ..export.common.report import Report
 from ..export.context import ExportContext

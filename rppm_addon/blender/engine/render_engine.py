@@ -5,7 +5,7 @@ import bpy
 
 from ...scene.passes import COMBINED, NOISY_IMAGE, aov_passes, light_group_passes
 from ..export.view_layer.passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
-from . import viewport
+from . import open_viewports
 from .baking import bake
 from .final import render_final
 
@@ -52,20 +52,20 @@ class RppmRenderEngine(bpy.types.RenderEngine):
 
     def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Something in the scene has changed."""
-        viewport.of_engine(self).update(context, depsgraph)
+        open_viewports.of_engine(self).update(context, depsgraph)
 
     def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Draw the newest picture into the viewport."""
-        viewport.of_engine(self).draw(context, depsgraph)
+        open_viewports.of_engine(self).draw(context, depsgraph)
 
 
 def register() -> None:
     """Add the engine."""
     bpy.utils.register_class(RppmRenderEngine)
-    viewport.register()
+    open_viewports.register()
 
 
 def unregister() -> None:
     """Take out the engine."""
-    viewport.unregister()
+    open_viewports.unregister()
     bpy.utils.unregister_class(RppmRenderEngine)

@@ -10,10 +10,10 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ...scene import Scene
+from ...session.client import remote_rendering
+from ...session.client.client import ProcessState, RendererProcess
 from ...session.render.render_job import RenderJob
 from ...session.render.results import RenderResult
-from ...session.transport import remote_rendering
-from ...session.transport.client import ProcessState, RendererProcess
 from ...session.transport.sessions import SessionKind
 from .chosen_device import VARIABLE, chosen_device
 from .denoising_libraries import denoising_libraries
@@ -33,7 +33,7 @@ def renderer_process() -> RendererProcess:
             folders = [folder for folder in sys.path if folder and Path(folder).is_dir()]
             python = [python_program(), *bpy.app.python_args]
             _process = RendererProcess(python, folders, log_path(), denoisers=denoising_libraries())
-            _process.environment = environment()
+            _process.launcher.environment = environment()
         return _process
 
 
@@ -68,7 +68,7 @@ def forget() -> None:
 def libraries_changed() -> None:
     """Another library may be there to denoise with: a process that runs is started anew with it."""
     if _process is not None:
-        _process.denoisers = denoising_libraries()
+        _process.launcher.denoisers = denoising_libraries()
         if _process.state is ProcessState.RUNNING:
             _process.restart()
 
@@ -76,7 +76,7 @@ def libraries_changed() -> None:
 def device_changed() -> None:
     """Another device was chosen: a process that runs is started anew on it."""
     if _process is not None:
-        _process.environment = environment()
+        _process.launcher.environment = environment()
         if _process.state is not ProcessState.STOPPED:
             _process.restart()
 

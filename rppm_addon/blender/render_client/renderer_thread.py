@@ -24,7 +24,7 @@ from .chosen_device import chosen_device
 from .denoising_libraries import denoising_libraries
 
 if TYPE_CHECKING:
-    from ...session.render.renderer import Frame, Progress, RenderResult
+    from ...session.render.results import Frame, Progress, RenderResult
 
 logger = logging.getLogger(__name__)
 

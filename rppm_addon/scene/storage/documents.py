@@ -61,7 +61,7 @@ _Reader = Callable[[typing.Any, Arrays], object]
 @functools.cache
 def _reader(kind: typing.Any) -> _Reader | None:
     """How values of a type are read; None where the document has them as they are."""
-    if kind in _PLAIN:
+    if kind in _PLAIN or kind is typing.Any:
         return None
     if kind is object:
         return _read_node_value

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders that begin where another ended, or late in the sequence of iterations, and leave what it takes to go on."""
+"""State from which renders continue, and renders that begin late in the sequence of iterations."""
 
 import dataclasses
 import logging
@@ -16,6 +16,9 @@ from ...scene.scene import Scene
 
 log = logging.getLogger(__name__)
 
+MOST_LOSSES = 3
+"""Number of times that one render may lose the device. After more, another context would not help either."""
+
 
 @dataclass
 class Pause:
@@ -23,7 +26,7 @@ class Pause:
 
     state: RenderState
     device: str
-    """Its label: another one, or another driver, computes the same picture, but not bit for bit."""
+    """Label of the device. Another device or driver computes the same picture, but not bit for bit."""
     radius_meters: float
     """r_max of the last iteration."""
     inspections: dict[str, np.ndarray] = field(default_factory=dict)
@@ -32,42 +35,44 @@ class Pause:
 
 @dataclass
 class Continuation:
-    """Where a render begins in the sequence of iterations, and who keeps it."""
+    """Where a render begins in the sequence of iterations, and who receives its state."""
 
     sample_offset: int = 0
-    """The film begins after so many iterations."""
+    """Number of iterations before the first one in the film."""
     begin: Pause | None = None
-    """Go on from here instead of from the beginning; its scene and settings are this render's."""
+    """State from which the render continues, of the same scene and settings; None is the beginning."""
     keep: Callable[[Pause], None] | None = None
-    """Told, in the thread of the renderer, how to go on: now and then, and when the render ends."""
+    """Receives the state every ``interval`` seconds and when the render ends, in the renderer's thread."""
     interval: float = math.inf
-    """Seconds from one such pause to the next."""
+    """Seconds between two calls of ``keep``."""
     safeguard: Callable[[Pause, float], None] | None = None
-    """Told likewise, and the seconds so far, as often as that costs little: where to begin again once the device or the
-    process is lost."""
+    """Receives the state and the seconds so far, as often as that costs little: the render begins there again if the
+    device or the process is lost."""
     seconds: float = 0.0
-    """Seconds that a render which begins again has taken before. Its time limit and snapshots count them."""
+    """Seconds that a continued render has taken before. Its time limit and snapshots count them."""
     snapshots_taken: int = 0
-    """Number of snapshots that were handed out before."""
+    """Number of snapshots that were handed out."""
 
 
 class DeviceLossRecovery:
-    """A render that goes on in another context where the device is lost."""
+    """Lets a render continue in another context when the device is lost."""
 
     def __init__(self, continuation: Continuation | None) -> None:
         """continuation: where the render begins."""
-        self.losses = 0
-        """Number of times that the device was lost so far."""
+        self._losses = 0
+        """Number of times that the device was lost."""
         self.continuation = dataclasses.replace(continuation or Continuation(), safeguard=self._safeguard)
-        """Where it begins, or begins again."""
+        """Where the render begins, or begins again."""
         self._start = time.perf_counter()
 
     def _safeguard(self, pause: Pause, seconds: float) -> None:
         self.continuation.begin = pause
 
-    def lose(self, scene: Scene, error: DeviceLostError) -> None:
-        """The device is lost: begin again, which the scene warns of."""
-        self.losses += 1
+    def recover(self, scene: Scene, error: DeviceLostError) -> None:
+        """Begin again after the last safeguard, and warn about it. Raises the error after MOST_LOSSES."""
+        if self._losses == MOST_LOSSES:
+            raise error
+        self._losses += 1
         begin = self.continuation.begin
         self.continuation.seconds = time.perf_counter() - self._start
         text = f"{error}; the render went on {place_of(begin)} in a new context"
@@ -76,5 +81,5 @@ class DeviceLossRecovery:
 
 
 def place_of(begin: Pause | None) -> str:
-    """Where a render goes on, in words."""
+    """Return in words where a render continues."""
     return f"after sample {begin.state.iterations_in_film}" if begin is not None else "from its beginning"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""First looks at the scenes of a session, until the renderer has a picture of its own."""
+"""First looks at the scenes of a session, until there is a rendered picture."""
 
+import logging
 import math
 
 import numpy as np
@@ -13,12 +14,12 @@ from ...integrator.progressive import ProgressivePhotonMapper
 from ...integrator.viewport.first_look import FirstLook
 from ...scene.errors import DeviceLostError, RppmError
 from ...scene.scene import Scene
-from ..render.renderer import log
 from .resolution_scaler import at_level
 
+log = logging.getLogger(__name__)
+
 MOST_PIXELS = 1 << 22
-"""Pixels that a first look is drawn with at most. A larger picture is enlarged from it: the memory on the device is not
-part of the forecast."""
+"""Most pixels of a first look. Larger pictures are enlarged from it, as its memory is not part of the forecast."""
 
 
 class FirstLooks:
@@ -30,7 +31,7 @@ class FirstLooks:
         self._look: FirstLook | None = None
 
     def of(self, mapper: ProgressivePhotonMapper) -> FirstLook:
-        """The first look that shares a mapper's geometry. It is the same one until release() is called."""
+        """Return the first look that uses a mapper's geometry. It is the same one until release() is called."""
         if self._look is None:
             built = mapper.device_scene
             self._look = FirstLook(
@@ -39,13 +40,13 @@ class FirstLooks:
         return self._look
 
     def shows_parts_of(self, scene: Scene) -> bool:
-        """Whether a scene can be drawn with what the scene before has on the device."""
+        """Whether a scene can be drawn with the parts of the scene before that are on the device."""
         return self._look is not None and self._look.shows_parts_of(scene)
 
     def draw(self, scene: Scene, mapper: ProgressivePhotonMapper) -> np.ndarray | None:
-        """A picture as FirstLook.draw returns it, or None for a panorama and for a scene that cannot be drawn.
+        """Return a picture as FirstLook.draw does, or None for a panorama and for a scene that cannot be drawn.
 
-        What is wrong with such a scene is reported by the render that follows. Raises DeviceLostError.
+        The render that follows reports what is wrong with such a scene. Raises DeviceLostError.
         """
         if scene.camera.panorama is not None:
             return None
@@ -60,7 +61,7 @@ class FirstLooks:
             return None
 
     def release(self) -> None:
-        """Give the buffers back, but for the mapper's geometry."""
+        """Free the buffers, except the mapper's geometry."""
         if self._look is not None:
             self._look.release()
             self._look = None

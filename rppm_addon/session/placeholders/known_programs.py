@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which scenes the programs of this process serve already."""
+"""The materials' programs with which the renderer's process has rendered."""
 
 from dataclasses import dataclass
 
@@ -11,38 +11,38 @@ from ...scene.materials import Material
 from ...scene.scene import Scene
 
 MOST_TRIANGLES = 100_000
-"""With more, building the scene takes longer than a first look, compiled or not."""
+"""Most triangles of a scene without a first look: building a larger one takes longer than the first look."""
 
 
 @dataclass(frozen=True)
 class MaterialProgram:
-    """A program of a material's own."""
+    """A program of a material."""
 
     text: str
     """GLSL."""
     displaces: bool = False
-    """Whether it moves vertices, and does not resolve hits."""
+    """Whether the program moves vertices; others resolve hits."""
 
     def has_stand_in(self, library: ProgramLibrary) -> bool:
-        """Whether it is still to be compiled, and is, in the background (see ProgramLibrary)."""
+        """Whether the program is being compiled in the background (ProgramLibrary.has_stand_in)."""
         return (displaced_vertices if self.displaces else resolve).has_stand_in(library, self.text)
 
 
 class KnownPrograms:
-    """Programs of materials that frames were rendered with; the others are the same for all scenes, or follow from what
-    these materials are of."""
+    """Programs of materials that the process has rendered with. Other programs are the same for all scenes, or follow
+    from these materials."""
 
     def __init__(self) -> None:
         self._programs: set[MaterialProgram] = set()
 
     def add(self, materials: MaterialTables) -> None:
-        """A frame was rendered with these."""
+        """Record the materials of a picture that was rendered."""
         self._programs.update(MaterialProgram(text) for text in materials.programs)
         self._programs.update(MaterialProgram(graph.text, True) for graph in materials.displacing.values())
 
     def cover(self, scene: Scene) -> bool:
-        """Whether the first frame of a scene takes little more than a first look at it: nothing is to be compiled and
-        little to be built."""
+        """Whether the first picture of a scene takes little longer than a first look: there is nothing to compile and
+        little to build."""
         triangles = [mesh.triangle_count for mesh in scene.meshes]
         known = range(len(triangles))
         if sum(triangles[instance.mesh] for instance in scene.instances if instance.mesh in known) > MOST_TRIANGLES:

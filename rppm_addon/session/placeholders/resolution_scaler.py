@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How coarse the first pictures of a changed view are."""
+"""The resolution of the first pictures of a changed view."""
 
 import math
 from dataclasses import replace
@@ -8,26 +8,26 @@ from ...scene.camera import Camera
 from ...scene.scene import Scene
 
 COARSEST = 0.25
-"""Smallest share of the full side length. Coarser pictures show too little to steer by."""
+"""Smallest fraction of the full side length. Coarser pictures show too little to navigate."""
 _STEADY = 0.2
-"""A first resolution that would change by less stays as it is, so that pictures do not flicker."""
+"""Least relative change of the first resolution; smaller ones would make pictures flicker."""
 _STEP = 2.0
 
 
 class ResolutionScaler:
-    """Chooses resolutions by what pixels have cost so far."""
+    """Chooses resolutions by the time that pixels have taken so far."""
 
     def __init__(self, seconds_per_pixel: float = math.inf) -> None:
-        """seconds_per_pixel: a guess, until it is measured."""
+        """seconds_per_pixel: an estimate, until it is measured."""
         self._seconds_per_pixel = seconds_per_pixel
         self._first = COARSEST
 
     def measure(self, pixels: int, seconds: float) -> None:
-        """Take note of how long a first picture has taken."""
+        """Record the time that a first picture has taken."""
         self._seconds_per_pixel = seconds / max(pixels, 1)
 
     def first(self, pixels: int, seconds: float) -> float:
-        """The share of the full side length at which a picture comes in about ``seconds``, if not the coarsest."""
+        """Return the fraction of the full side length at which a picture takes about ``seconds``, at least COARSEST."""
         affordable = seconds / (self._seconds_per_pixel * max(pixels, 1))
         wanted = min(1.0, max(COARSEST, math.sqrt(affordable)))
         if abs(wanted - self._first) > _STEADY * self._first or wanted in {1.0, COARSEST}:
@@ -35,8 +35,10 @@ class ResolutionScaler:
         return self._first
 
     def levels(self, pixels: int, seconds: float) -> list[float]:
-        """Ascending shares of the full side length, the last 1: a first picture in about ``seconds``, then sharper
-        ones, each four times as many pixels."""
+        """Return ascending fractions of the full side length, the last 1.
+
+        The first picture takes about ``seconds``; each of the others has about four times as many pixels.
+        """
         levels = [self.first(pixels, seconds)]
         while levels[-1] < 1.0:
             sharper = levels[-1] * _STEP
@@ -45,10 +47,10 @@ class ResolutionScaler:
 
 
 def at_level(scene: Scene, level: float) -> Scene:
-    """The scene as it is rendered at a share of its side length: fewer pixels, and fewer photons in keeping.
+    """Return the scene as it is rendered at a fraction of its side length, with fewer pixels and photons.
 
-    The radius of Eq. 3 goes with the frame and not with its pixels, so photons thin out less than pixels do. Pixels are
-    looked at in their middle, where the picture that they are enlarged to has the surfaces that guide it.
+    The radius of Eq. 3 is proportional to the frame and not to its pixels, so photons become fewer by less than pixels.
+    Camera rays go through the middle of pixels: the enlarged picture is guided by the surfaces there.
     """
     if level >= 1.0:
         return scene
@@ -59,7 +61,7 @@ def at_level(scene: Scene, level: float) -> Scene:
 
 
 def scaled(camera: Camera, level: float) -> Camera:
-    """A camera with fewer pixels that sees the same, its crop to within one of them."""
+    """Return a camera with fewer pixels and the same view; its crop is rounded to pixels."""
     width, height = (max(1, round(size * level)) for size in (camera.width, camera.height))
     crop = None
     if camera.crop is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials whose programs are compiled in the background, and what is rendered in their place until then."""
+"""Stand-ins: materials that are rendered in place of others whose programs are compiled in the background."""
 
 import dataclasses
 import time
@@ -11,13 +11,13 @@ from ...scene.scene import Scene
 from .known_programs import MaterialProgram, programs_of
 
 FEWEST_PROGRAMS = 2
-"""Where fewer are to be compiled, that of the stand-ins is one more."""
+"""Fewest programs to compile for which stand-ins are used, as they need a program as well."""
 EXCHANGE_SECONDS = 4.0
-"""Between two exchanges of stand-ins for what is ready: the picture begins anew with each."""
+"""Time between two exchanges of stand-ins for materials: the picture begins anew with each."""
 
 
 class StandIns:
-    """Sees to it that a viewport waits for no material's program. Final renders wait for all of them."""
+    """Replaces materials in a viewport until their programs are compiled. Final renders wait for the programs."""
 
     def __init__(self, library: ProgramLibrary) -> None:
         self._library = library
@@ -26,18 +26,18 @@ class StandIns:
         self._made: dict[int, tuple[Material, Material]] = {}
         """Materials of the scene with their stand-ins, likewise."""
         self._waited_for: set[MaterialProgram] = set()
-        """Programs that are not ready."""
+        """Programs that are not compiled yet."""
         self._used = False
-        """Whether the program of the stand-ins is there."""
+        """Whether the program of the stand-ins is compiled."""
         self._exchanged_at = 0.0
 
     @property
     def count(self) -> int:
-        """Programs that something stands in for."""
+        """Number of programs in whose place stand-ins are rendered."""
         return len(self._waited_for)
 
     def replace(self, scene: Scene) -> Scene:
-        """The scene, with stand-ins for materials whose programs are compiled in the background from now on."""
+        """Return the scene with stand-ins for materials whose programs are compiled in the background from now on."""
         self._programs = {id(material): (material, self._programs_of(material)) for material in scene.materials}
         self._made = {key: made for key, made in self._made.items() if key in self._programs}
         programs = dict.fromkeys(program for _, own in self._programs.values() for program in own)
@@ -51,7 +51,7 @@ class StandIns:
         return self.as_shown(scene)
 
     def as_shown(self, scene: Scene) -> Scene:
-        """The scene with the stand-ins of the last one that ``replace`` was given, where its materials are the same."""
+        """Return the scene with the stand-ins of the last call of ``replace``, if it has the same materials."""
         if not self._waited_for or any(id(material) not in self._programs for material in scene.materials):
             return scene
         return dataclasses.replace(scene, materials=[self._shown(material, scene) for material in scene.materials])

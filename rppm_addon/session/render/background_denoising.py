@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Denoising in a thread of its own: iterations go on meanwhile, messages are answered, and renders can be stopped."""
+"""Denoising in a thread of its own, which leaves the session free to render, answer messages and stop."""
 
 import concurrent.futures
 import time
@@ -15,11 +15,11 @@ from .results import RenderResult
 MOST_TIME = 0.2
 """Largest fraction of all time that denoising may take. Without a GPU it takes the processor from the iterations."""
 POLL_SECONDS = 0.02
-"""Between two looks at a picture that is being denoised, when there is nothing else to do."""
+"""Time between two checks of a picture that is being denoised, when there is nothing else to do."""
 
 
 class BackgroundDenoising:
-    """Pictures of a viewport, one at a time; the thread that renders starts it and takes it back."""
+    """Denoises pictures of a viewport, one at a time. The thread that renders calls all methods."""
 
     def __init__(self, denoiser: Denoiser) -> None:
         self._denoiser = denoiser
@@ -41,15 +41,17 @@ class BackgroundDenoising:
     def start(
         self, key: tuple[int, int], combined: np.ndarray, passes: Mapping[str, np.ndarray], settings: RenderSettings
     ) -> None:
-        """Begin with a picture, known by ``key``; to be called when idle. Raises DenoiserError where there is no
-        library."""
+        """Begin to denoise a picture; ``key`` identifies it. No other one may be denoised.
+
+        Raises DenoiserError where there is no library.
+        """
         self._denoiser.open()
         self._executor = self._executor or concurrent.futures.ThreadPoolExecutor(1, "RPPM denoising")
         self._key, self._started = key, time.perf_counter()
         self._work = self._executor.submit(self._denoiser.denoise, combined, passes, settings)
 
     def take(self, seconds: float = 0.0) -> tuple[tuple[int, int], np.ndarray] | None:
-        """The key and the denoised picture, if there is one within so many seconds.
+        """Return the key and the denoised picture if it is ready within so many seconds, or None.
 
         Raises DenoiserError where it could not be denoised.
         """
@@ -61,14 +63,14 @@ class BackgroundDenoising:
         return self._key, work.result()
 
     def release(self) -> None:
-        """End the thread, which may still have to finish a picture that nobody takes."""
+        """End the thread, once it has finished its picture."""
         if self._executor is not None:
             self._executor.shutdown(wait=False)
             self._executor = self._work = None
 
 
 class BackgroundFinish:
-    """The result of a render on its way to be handed out (finished_result)."""
+    """Finishes the result of a render (finished_result)."""
 
     def __init__(self, result: RenderResult, settings: RenderSettings, denoiser: Denoiser) -> None:
         self._result = result
@@ -78,7 +80,7 @@ class BackgroundFinish:
         executor.shutdown(wait=False)
 
     def take(self, stopping: bool) -> RenderResult | None:
-        """The finished result, once there is one; with ``stopping`` what there is, noisy if need be."""
+        """Return the finished result, or None until it is ready. ``stopping``: return it now, noisy if need be."""
         if concurrent.futures.wait([self._work], POLL_SECONDS).done:
             return self._work.result()
         if not stopping:

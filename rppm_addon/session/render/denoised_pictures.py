@@ -3,12 +3,13 @@
 
 import logging
 import time
+from collections.abc import Callable
 
 from ...denoising.denoiser import Denoiser
 from ...scene.errors import DenoiserError
 from ...scene.passes import NOISY_IMAGE
 from ...scene.settings import RenderSettings
-from .results import Frame, RenderResult
+from .results import Frame, Progress, RenderResult
 
 log = logging.getLogger(__name__)
 
@@ -31,14 +32,14 @@ def denoised_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser) -
 
 
 def noisy_frame(frame: Frame, settings: RenderSettings) -> Frame:
-    """The same where denoising fails, or is not waited for."""
+    """Return a frame as denoised_frame does, but noisy: denoising has failed or is not waited for."""
     wanted = wanted_frame(frame, settings)
     noisy = {NOISY_IMAGE.name: frame.combined} if settings.use_denoising else {}
     return Frame(wanted.combined, {**wanted.passes, **noisy})
 
 
 def finished_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser, warnings: list[str]) -> Frame:
-    """denoised_frame, or where it fails noisy_frame, and a line more in ``warnings``."""
+    """Return the denoised frame, or where that fails the noisy one and a line more in ``warnings``."""
     try:
         return denoised_frame(frame, settings, denoiser)
     except DenoiserError as error:
@@ -50,8 +51,8 @@ def finished_frame(frame: Frame, settings: RenderSettings, denoiser: Denoiser, w
 
 
 def finished_result(result: RenderResult, settings: RenderSettings, denoiser: Denoiser) -> RenderResult:
-    """A result whose frame is the film's, with its finished frame. One that was stopped is not denoised: whoever stops
-    a render does not want to wait."""
+    """Return a result with its frame finished. The picture of a render that was stopped is not denoised, which would
+    make its user wait."""
     if result.stopped or not settings.use_denoising:
         return RenderResult(noisy_frame(result.frame, settings), result.statistics, result.stopped)
     start, statistics = time.perf_counter(), result.statistics
@@ -60,3 +61,32 @@ def finished_result(result: RenderResult, settings: RenderSettings, denoiser: De
     statistics.seconds += seconds
     statistics.stage_seconds = {**statistics.stage_seconds, "denoising": seconds}
     return RenderResult(frame, statistics, result.stopped)
+
+
+class FinishedPictures:
+    """Callbacks of a render's caller, who receives pictures with the passes that the settings name."""
+
+    def __init__(
+        self,
+        settings: RenderSettings,
+        denoiser: Denoiser,
+        on_progress: Callable[[Progress, Callable[[], Frame]], None] | None,
+        on_snapshot: Callable[[float, Frame], None] | None,
+    ) -> None:
+        """on_progress, on_snapshot: as Renderer.render takes them."""
+        self._settings = settings
+        self._denoiser = denoiser
+        self._on_progress = on_progress
+        self._on_snapshot = on_snapshot
+        self._warnings: list[str] = []
+        """Warnings of snapshots, each logged once."""
+
+    def report(self, progress: Progress, read_frame: Callable[[], Frame]) -> None:
+        """Pass the progress on, with a function that returns the noisy picture so far."""
+        if self._on_progress is not None:
+            self._on_progress(progress, lambda: wanted_frame(read_frame(), self._settings))
+
+    def take_snapshot(self, seconds: float, frame: Frame) -> None:
+        """Pass a frame of the film on, denoised where the settings ask for it."""
+        if self._on_snapshot is not None:
+            self._on_snapshot(seconds, finished_frame(frame, self._settings, self._denoiser, self._warnings))

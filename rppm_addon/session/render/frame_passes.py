@@ -28,13 +28,13 @@ def frame_passes(
 
 
 def arriving_light(caught: np.ndarray) -> np.ndarray:
-    """(height, width, 3) of the pass Shadow Catcher: a share of light, and 1 where there are no catchers.
+    """(height, width, 3) of the pass Shadow Catcher: the fraction of light that arrives; 1 where there is no catcher.
 
     caught: (height, width, 3) of the film (shaders/film/caught_shadows.comp).
     """
     lit, seen = caught[..., 0], caught[..., 1]
-    share = np.divide(lit, seen, out=np.ones_like(lit), where=seen > 0.0)
-    return np.repeat(share[..., None], 3, axis=-1)
+    fraction = np.divide(lit, seen, out=np.ones_like(lit), where=seen > 0.0)
+    return np.repeat(fraction[..., None], 3, axis=-1)
 
 
 def without_color(light: np.ndarray, color: np.ndarray) -> np.ndarray:

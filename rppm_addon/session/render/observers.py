@@ -2,7 +2,7 @@
 """How code outside Blender's engine follows a render that Blender started.
 
 bpy.ops.render.render() takes no callbacks and gives nothing back. Whoever calls it sets an
-observer first; the engine asks for it and tells it what happens, in this order:
+observer first; the engine asks for it and reports what happens, in this order:
 
     observer = current_observer()            # a RenderObserver that does nothing when none is set
     observer.on_picture(name)                # of which view layer and view it is
@@ -29,7 +29,7 @@ from ...scene import Scene
 
 if TYPE_CHECKING:
     from ..checkpoints.continuation import Continuation
-    from .renderer import Frame, Progress, RenderResult
+    from .results import Frame, Progress, RenderResult
 
 
 class RenderObserver:
@@ -39,7 +39,7 @@ class RenderObserver:
     """Ascending seconds since on_start at which on_snapshot wants a frame."""
 
     continuation: "Continuation | None" = None
-    """Where the render begins and who keeps it; in the background only (RenderJob.continuation)."""
+    """Where the render begins and who receives its state; in the background only (RenderJob.continuation)."""
 
     def on_picture(self, name: PictureName) -> None:
         """Take note of the view layer and view that follow. A render may have several, one after the other."""
@@ -62,7 +62,7 @@ class RenderObserver:
         return False
 
     def on_snapshot(self, seconds: float, frame: "Frame", scene: Scene) -> None:
-        """The frame as it stands at a mark of ``snapshots``."""
+        """Take the picture at a mark of ``snapshots``."""
 
     def on_finish(self, result: "RenderResult", scene: Scene) -> None:
         """The render has ended, as planned or stopped."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A render as its caller sees it, wherever the renderer is."""
+"""The interface between a render and its caller, in whichever process the renderer is."""
 
 from typing import TYPE_CHECKING
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .results import Frame, Progress
 
 POLL_SECONDS = 0.05
-"""How often a waiting caller asks whether to stop, beside every iteration."""
+"""Seconds between two calls of should_stop by a caller that waits."""
 
 
 class RenderJob:
@@ -22,10 +22,11 @@ class RenderJob:
     snapshots: tuple[float, ...] = ()
 
     continuation: "Continuation | None" = None
-    """Where to begin and who keeps the render, read after on_start; in the renderer's process: checkpoint."""
+    """Where the render begins and who receives its state, read after on_start. The renderer's process uses
+    ``checkpoint`` instead."""
 
     checkpoint: "Path | None" = None
-    """The file that a render in the renderer's process goes on from and is kept in; None is none."""
+    """The file from which a render in the renderer's process continues and in which it is kept; None is none."""
 
     def should_stop(self) -> bool:
         """Whether the render is to end with what it has."""

@@ -2,9 +2,9 @@
 """A viewport's frames, from the renderer's process to Blender: three slots in shared memory.
 
 Beside its picture a slot has a guard, a generation, a sequence number and a size. The writer makes the guard odd,
-writes the slot, and makes it even; then it announces the slot. The reader copies it between two looks at the guard and
-takes the copy only if both are the same even number, and if the slot is what was announced: a torn or an older frame is
-never shown. While a frame is copied, two more can be written.
+writes the slot, and makes it even; then it announces the slot. The reader copies the slot between two readings of the
+guard. It uses the copy only if both are the same even number and the slot is the announced one, so that no torn or
+older frame is shown. While a frame is copied, two more can be written.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class SharedFrame:
     combined: np.ndarray
     """(height, width, 4) float32, scene-linear Rec.709, premultiplied alpha, row 0 at the bottom."""
     progress: float
-    """Share of the iterations done, 0 to 1."""
+    """Fraction of the iterations done, 0 to 1."""
 
 
 class _Slots:
@@ -65,7 +65,7 @@ class FrameWriter:
         self._sequence = 0
 
     def reserve(self, pixels: int) -> dict | None:
-        """Make room for pictures of so many pixels; what to tell the reader of new slots, or None if the old ones do.
+        """Make room for pictures of so many pixels. Returns the message about new slots; None if the old ones suffice.
 
         Raises OSError when there is not enough shared memory.
         """
@@ -76,7 +76,7 @@ class FrameWriter:
         return {"block": self._slots.block.name, "capacity": pixels}
 
     def write(self, generation: int, combined: np.ndarray) -> dict:
-        """Write the next frame, (height, width, 4) float32; returns what to tell the reader."""
+        """Write the next frame, (height, width, 4) float32. Returns the message about it, without its progress."""
         self._sequence += 1
         slot = self._sequence % SLOTS
         header = self._slots.headers[slot]
@@ -103,7 +103,7 @@ class FrameReader:
     def __init__(self, block: str, capacity: int) -> None:
         """Open the slots that the writer has announced.
 
-        Raises FileNotFoundError when it has others meanwhile, and ProtocolError when these are none.
+        Raises FileNotFoundError when the writer has replaced them, and ProtocolError when they cannot be slots.
         """
         if not 0 < natural(capacity, "a capacity") <= _MOST_PIXELS:
             raise ProtocolError(f"slots of {capacity} pixels cannot be")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""State of a render that a renderer's process hands over, for another process to go on with if this one ends."""
+"""State of a render that a renderer's process hands over, so that another process continues it if this one ends."""
 
 import logging
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class KeptRender:
-    """A pause as it came from a process; only the next process looks into it."""
+    """State as it came from a process; only the next process decodes it."""
 
     document: dict[str, Any]
     arrays: list[np.ndarray]
@@ -25,7 +25,7 @@ class KeptRender:
     """Seconds that the render has taken so far."""
 
     def message(self, reason: str) -> tuple[dict[str, Any], SharedBlock | None]:
-        """The content of "go_on", and the block that is to be kept until it is read. Raises OSError without memory.
+        """Return the content of "resume", and the block that is kept until it is read. Raises OSError without memory.
 
         reason: why the process ended.
         """
@@ -34,7 +34,7 @@ class KeptRender:
 
 
 def described(pause: Pause) -> tuple[dict[str, Any], dict[str, Any], SharedBlock | None]:
-    """A pause's document, its arrays as messages have them, and their block. Raises OSError without memory."""
+    """Return a pause's document, its arrays as messages have them, and their block. Raises OSError without memory."""
     arrays: list[np.ndarray] = []
 
     def keep(array: np.ndarray) -> int:
@@ -46,9 +46,9 @@ def described(pause: Pause) -> tuple[dict[str, Any], dict[str, Any], SharedBlock
 
 
 def pause_of(document: dict[str, Any], arrays: list[np.ndarray]) -> Pause | None:
-    """The pause that was described; None for what is none: the render then begins anew."""
+    """Return the pause that a document describes; None for another document: the render then begins anew."""
     try:
         return decode(document, Pause, arrays)
     except (LookupError, TypeError, ValueError, AttributeError):
-        log.warning("what another process has left of a render cannot be read", exc_info=True)
+        log.warning("the state that another process has left of a render cannot be read", exc_info=True)
         return None

@@ -3,7 +3,7 @@
 
 A message is a JSON object behind its length in four bytes; its "kind" says what it is. Only the standard library is
 imported here: the child reads its first message before it can find anything else.
-Of each kind of message a table says what it holds; nothing else is let in, on either side.
+A table lists the fields of each kind of message; both sides refuse anything else.
 """
 
 import json
@@ -11,7 +11,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any, BinaryIO, TypeAlias
 
-VERSION = 6
+VERSION = 7
 LONGEST_MESSAGE = 1 << 28
 _Fields: TypeAlias = dict[str, Any]
 """Types, or tuples of types, of what a message has beside its kind."""
@@ -29,24 +29,24 @@ TO_CHILD: dict[str, _Fields] = {
     # A snapshot.
     "show": _SESSION | _PACKED | {"number": int, "generation": int, "navigating": bool},
     "pause": _SESSION | {"paused": bool},
-    # A render is to send its picture at these times.
+    # Times at which a render sends its picture.
     "expect_snapshots": _SESSION | {"seconds": list},
-    # Renders go on from this checkpoint and are kept in it; "" is none.
-    "keep_still": _SESSION | {"path": str},
-    # The render of the next scene goes on where one stood that a process kept which has ended for this reason.
-    "go_on": _SESSION | _PACKED | {"seconds": (float, int), "reason": str},
-    # A render is to send its picture once.
-    "want_picture": _SESSION,
+    # Renders continue from this checkpoint and are kept in it; "" is none.
+    "set_checkpoint": _SESSION | {"path": str},
+    # The render of the next scene continues from the state of a process that has ended for this reason.
+    "resume": _SESSION | _PACKED | {"seconds": (float, int), "reason": str},
+    # A render sends its picture once.
+    "request_picture": _SESSION,
     # The render's oldest frame is copied: its shared memory is free.
     "received": _SESSION,
-    # The render of a scene is to end with what it has.
+    # The render of a scene ends with the picture that it has.
     "stop": _SESSION | {"generation": int},
     # dead are the handles of members that nothing uses any more.
     "close": _SESSION | {"dead": list},
     # The same without closing.
     "forget": {"dead": list},
     "ping": {},
-    # Open each device for a moment, to tell more of it.
+    # Open each device for a moment, to report more about it.
     "list_devices": {},
     # End; so does the end of the pipe.
     "leave": {},
@@ -67,11 +67,11 @@ FROM_CHILD: dict[str, _Fields] = {
     "status": _SESSION | {"status": dict},
     # A render's Progress.
     "progress": _SESSION | {"progress": dict},
-    # As it was wanted.
+    # The picture that was requested.
     "picture": _SESSION | {"arrays": dict, "passes": list, "progress": dict},
-    # As it was expected.
+    # The picture at a time that was named.
     "snapshot": _SESSION | {"arrays": dict, "passes": list, "seconds": (float, int)},
-    # What it takes to go on with a render (kept_renders.py).
+    # State with which another process continues a render (kept_renders.py).
     "kept": _SESSION | _PACKED | {"generation": int, "seconds": (float, int)},
     # The last; statistics are RenderStatistics.
     "result": _SESSION | {"arrays": dict, "passes": list, "statistics": dict, "stopped": bool},

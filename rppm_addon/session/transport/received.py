@@ -4,6 +4,7 @@
 from typing import Any, TypeVar
 
 from ...scene.errors import SceneError
+from ...scene.storage.documents import decode
 from ...scene.storage.validation import check_record
 from .protocol import ProtocolError
 
@@ -11,10 +12,13 @@ _Record = TypeVar("_Record")
 
 
 def received(kind: type[_Record], values: dict[str, Any]) -> _Record:
-    """A dataclass of plain values, which may be any numbers. Raises ProtocolError for what is none of its kind."""
+    """Return a dataclass of plain values, or of such dataclasses, that came with a message. Numbers may be any.
+
+    Raises ProtocolError for values that do not fit the dataclass.
+    """
     try:
-        record = kind(**values)
+        record = decode(values, kind, {})
         check_record(record, kind)
-    except (SceneError, TypeError) as error:
+    except (SceneError, LookupError, TypeError, ValueError, AttributeError) as error:
         raise ProtocolError(f"no {kind.__name__} came ({error})") from error
     return record

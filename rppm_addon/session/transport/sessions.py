@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Kinds and status of sessions in the renderer's process, which both sides know."""
+"""Kinds and status of sessions in the renderer's process, for both sides of the connection."""
 
 import enum
 from dataclasses import dataclass, field
 
+from ..render.results import PhotonStatistics, Progress
+
 
 class SessionKind(enum.Enum):
-    """Purpose of a session; the value is its weight when several share the device."""
+    """Purpose of a session; the value is its weight when several render at once."""
 
     PREPARATION = 0.25
     VIEWPORT = 1
@@ -15,41 +17,36 @@ class SessionKind(enum.Enum):
 
 
 @dataclass(frozen=True)
+class CompilationProgress:
+    """Progress of the programs of a viewport."""
+
+    program: str = ""
+    """Name of the last program whose compilation has begun."""
+    started: int = 0
+    """Programs that were compiled before the first iteration."""
+    needed: int = 0
+    """Programs that are known to be needed for the first iteration."""
+    stood_in_for: int = 0
+    """Programs of materials that are compiled while stand-ins are rendered in their place."""
+
+
+@dataclass(frozen=True)
 class SessionStatus:
-    """How a session gets on."""
+    """Status of a viewport's session."""
 
     generation: int = 0
     """Generation of the scene that the status is about."""
-    program: str = ""
-    """The name of the last that is being compiled."""
-    programs_started: int = 0
-    """Until the first iteration: programs that are compiled."""
-    programs: int = 0
-    """And those that are known to be needed."""
-    programs_stood_in_for: int = 0
-    """Programs of materials that are compiled while stand-ins are rendered in their place."""
-    iteration: int = 0
-    iterations: int = 0
-    photons: int = 0
-    elapsed_seconds: float = 0.0
-    """Since the scene was taken up."""
-    radius_meters: float = 0.0
-    """r_max of the iteration."""
-    memory_bytes: int = 0
-    density_estimation: str = ""
-    """As RenderStatistics has it."""
-    first_photon_hits: str = ""
-    """As RenderStatistics has it."""
-    iterations_per_second: float = 0.0
-    photons_per_second: float = 0.0
-    noise: float = 0.0
-    """As Progress has it."""
-    noise_threshold: float = 0.0
-    source_watts: dict[str, float] = field(default_factory=dict)
-    """As RenderStatistics has it."""
-    source_photons: dict[str, int] = field(default_factory=dict)
+    compilation: CompilationProgress = field(default_factory=CompilationProgress)
+    progress: Progress | None = None
+    """Progress since the scene was received; None before the first iteration."""
+    photon_statistics: PhotonStatistics = field(default_factory=PhotonStatistics)
     warnings: list[str] = field(default_factory=list)
     error: str = ""
     """One line with the remedy; empty while all is well."""
     settled: bool = False
     """Whether nothing more will come until another scene is shown."""
+
+    @property
+    def iteration(self) -> int:
+        """Number of complete iterations."""
+        return 0 if self.progress is None else self.progress.iteration

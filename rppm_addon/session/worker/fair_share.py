@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whose turn it is on the device."""
+"""Fair-share scheduling of the device."""
 
 from collections.abc import Hashable, Iterable
 
 
 class FairShare:
-    """Gives turns so that those who want the device share its time by their weights.
+    """Divides the device's time among sessions in proportion to their weights.
 
-    Each has a clock that its turns advance, the slower the greater the weight; the one whose clock is behind is next.
-    Who comes back after a pause starts where the others are: time that was not wanted is not owed.
+    Each session has a clock that its turns advance, the slower the greater its weight. The session whose clock is
+    behind is next. A session that was idle starts where the others are, so idle time is not made up for.
     """
 
     def __init__(self) -> None:
@@ -17,7 +17,7 @@ class FairShare:
         self._now = 0.0
 
     def next(self, candidates: Iterable[Hashable]) -> Hashable | None:
-        """Who is next of those that want the device; None when nobody does."""
+        """Return which of the sessions that are not idle is next; None if all are."""
         candidates = list(candidates)
         for candidate in candidates:
             if candidate not in self._waiting:
@@ -30,6 +30,6 @@ class FairShare:
         self._now = self._clocks[chosen]
         return chosen
 
-    def took(self, candidate: Hashable, seconds: float, weight: float) -> None:
-        """The turn of ``candidate`` has taken so long."""
+    def charge(self, candidate: Hashable, seconds: float, weight: float) -> None:
+        """Advance the clock of a session whose turn has taken so many seconds."""
         self._clocks[candidate] += seconds / weight

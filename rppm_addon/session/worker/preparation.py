@@ -16,9 +16,9 @@ log = logging.getLogger(__name__)
 
 
 class Preparation:
-    """Has the programs that pictures of a scene need compiled by a single thread at a lower priority.
+    """Compiles the programs that pictures of a scene need, with a single thread at a lower priority.
 
-    What other sessions need meanwhile comes first. Of the scene only the materials' graphs and the settings count.
+    Programs of other sessions come first. Only the settings and the materials' graphs of the scene matter.
     """
 
     def __init__(self, context: Context, library: ProgramLibrary, send: Callable[..., None]) -> None:
@@ -33,7 +33,7 @@ class Preparation:
 
     @property
     def busy(self) -> bool:
-        """Whether there is something to do here; compiling goes on beside it."""
+        """Whether there are programs to link; the background compiler works independently."""
         return self._slices is not None
 
     def run_slice(self) -> None:
@@ -43,8 +43,8 @@ class Preparation:
                 return
         except (BrokenPipeError, DeviceLostError):
             raise
-        except Exception:  # whoever renders says so
-            self._context.finish()  # which says so where it is because the device is lost
+        except Exception:  # the render that follows reports it
+            self._context.finish()  # raises DeviceLostError if that is the cause
             log.info("not all is prepared", exc_info=True)
         self._slices = None
         self._send("prepared")
@@ -63,5 +63,5 @@ class Preparation:
                 program.has_stand_in(self._library)
 
     def release(self) -> None:
-        """Do nothing more here; what is being compiled is of use to others."""
+        """Link no more programs. Those that are being compiled are finished, as other sessions may use them."""
         self._slices = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The renderer's process: sessions that share one device."""
+"""The renderer's process: sessions that render on one device."""
 
 import contextlib
 import functools
@@ -31,10 +31,10 @@ from .rendering import Rendering
 log = logging.getLogger(__name__)
 
 _FOR_SESSIONS = frozenset(
-    ("show", "pause", "expect_snapshots", "keep_still", "go_on", "want_picture", "received", "stop")
+    ("show", "pause", "expect_snapshots", "set_checkpoint", "resume", "request_picture", "received", "stop")
 )
 LEAVE_SECONDS = 1.0
-"""How long what the device is at may take to end once Blender has left."""
+"""Time that the device may take to finish its work once Blender has left."""
 
 
 def work(hello: dict, reader: BinaryIO, writer: BinaryIO) -> int:
@@ -61,7 +61,7 @@ def work(hello: dict, reader: BinaryIO, writer: BinaryIO) -> int:
 
 
 class Worker:
-    """Reads messages in a thread of its own, renders in this one."""
+    """Reads messages in one thread and renders in another."""
 
     def __init__(self, context: Context, denoiser: Denoiser, reader: BinaryIO, writer: BinaryIO) -> None:
         self._context = context
@@ -74,9 +74,9 @@ class Worker:
         self._inbox: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
         self._sessions: dict[int, tuple[SessionKind, ViewportRenderer | Rendering | Preparation]] = {}
         self._programs = KnownPrograms()
-        self._share = FairShare()
+        self._scheduler = FairShare()
         self._whole = threading.Event()
-        """Not set while a scene is coming in: the drivers leave the reading thread little of the interpreter."""
+        """Cleared while a scene is received: the drivers leave the reading thread little of the interpreter."""
         self._whole.set()
         self._left = threading.Event()
 
@@ -120,7 +120,7 @@ class Worker:
             os._exit(code)
 
     def _decode(self, message: dict) -> None:
-        """Put the scene in place of the documents and arrays that describe it."""
+        """Replace the documents and arrays that describe a scene by the scene."""
         kind = message["kind"]
         if kind == "members":
             self._whole.clear()
@@ -132,14 +132,17 @@ class Worker:
                 session.expect(message["scene"], message["generation"])
             self._send("taken", session=message["session"], number=message.pop("number"))
             self._whole.set()
-        elif kind == "go_on":
+        elif kind == "resume":
             message["pause"] = pause_of(message.pop("document"), unpack(message.pop("arrays")))
         self._receiver.forget(message.pop("dead", ()))
 
     # In the main thread.
 
     def _handle_messages(self) -> bool:
-        """Take what has come, and wait for it when there is nothing to render; False when Blender has left."""
+        """Handle the messages that have come; wait for one when there is nothing to render.
+
+        Returns False when Blender has left.
+        """
         with contextlib.suppress(queue.Empty):
             while True:
                 busy = any(session.busy for _, session in self._sessions.values())
@@ -176,21 +179,21 @@ class Worker:
             raise ProtocolError(f"there is no message {kind}")
 
     def _list_devices(self) -> None:
-        """In a thread of its own: drivers take their time, and contexts belong to threads."""
+        """Open each device, in a thread of its own: drivers take their time, and contexts belong to threads."""
         information = self._context.information
         devices = open_others(information.devices, information.number)
         with contextlib.suppress(BrokenPipeError):
             self._send("devices", devices=[asdict(device) for device in devices])
 
     def _run_slice(self) -> None:
-        number = self._share.next(number for number, (_, session) in self._sessions.items() if session.busy)
+        number = self._scheduler.next(number for number, (_, session) in self._sessions.items() if session.busy)
         if number is None:
             return
         kind, session = self._sessions[number]
         started = time.perf_counter()
         session.run_slice()
         self._context.finish()
-        self._share.took(number, time.perf_counter() - started, kind.value)
+        self._scheduler.charge(number, time.perf_counter() - started, kind.value)
 
     def _close(self, number: int) -> None:
         if number in self._sessions:

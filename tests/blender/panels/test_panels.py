@@ -22,7 +22,8 @@ from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_n
 from rppm_addon.integrator.memory import expected_memory
 from rppm_addon.scene import RenderSettings
 from rppm_addon.scene.common.quantities import bytes_text
-from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.client.client import ProcessState
+from rppm_addon.session.render.results import PhotonStatistics, Progress
 
 OF_SWITCH = {
     "adaptive_min_samples": "RPPM_PT_sampling_final",
@@ -45,13 +46,12 @@ def no_reports():
     reports.forget()
 
 
-def report(kind=RenderKind.FINAL, **values):
-    """A report of a render of 64x32 pixels."""
-    figures = {
-        "settings": RenderSettings(iterations=8, photons=1000), "iterations": 8, "photons": 8000, "seconds": 5.0,
-        "radius_meters": 0.012, "memory_bytes": 200 << 20, "build_seconds": 1.0, "device": "Device", "triangles": 12,
-    }  # fmt: skip
-    return RenderReport(kind, 64, 32, **figures | values)
+def report(kind=RenderKind.FINAL, iterations=8, photons=8000, warnings=(), **statistics):
+    """A report of a render of 64x32 pixels, with values of PhotonStatistics."""
+    settings = RenderSettings(iterations=8, photons=1000)
+    progress = Progress(iterations, 8, 5.0, photons, memory_bytes=200 << 20, build_seconds=1.0)
+    photon_statistics = PhotonStatistics(0.012, **statistics)
+    return RenderReport(kind, 64, 32, settings, progress, photon_statistics, "Device", 12, warnings)
 
 
 def test_panels_show_every_setting(scene):

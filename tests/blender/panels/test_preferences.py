@@ -15,7 +15,7 @@ from rppm_addon.blender import operators, preferences
 from rppm_addon.blender.preferences import RppmPreferences
 from rppm_addon.blender.render_client import renderer_process
 from rppm_addon.gl.context.context import DeviceInformation
-from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.client.client import ProcessState
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -19,7 +19,8 @@ from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select, subjects
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.scene import RenderSettings
-from rppm_addon.session.transport.client import RendererProcess
+from rppm_addon.session.client.client import RendererProcess
+from rppm_addon.session.render.results import Progress
 from rppm_addon.session.transport.sessions import SessionKind, SessionStatus
 
 
@@ -53,7 +54,7 @@ def test_the_radius_that_is_shown_is_the_one_that_is_used(facing):
     facing.rppm.radius_scale = 90.0  # of a megapixel: 2.8 pixels of these
     report = rendered(facing)
     shown = radius_reading(export_settings(facing), 32, 32)
-    assert report.radius_meters == pytest.approx(shown.last * 2.0 / 32, rel=1e-4)
+    assert report.photon_statistics.radius_meters == pytest.approx(shown.last * 2.0 / 32, rel=1e-4)
     assert shown.first == pytest.approx(90.0 * 32 / 1024 / math.sqrt(math.pi))
 
 
@@ -72,11 +73,12 @@ def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
     set_world(facing, (0.3, 0.3, 0.3))
     report = rendered(facing)
     names = {source_name(f"The {kind}") for kind in factors} | {SURFACES, ENVIRONMENT}
-    assert set(report.source_watts) == set(report.source_photons) == names
-    assert sum(report.source_photons.values()) == 4000
+    statistics = report.photon_statistics
+    assert set(statistics.source_watts) == set(statistics.source_photons) == names
+    assert sum(statistics.source_photons.values()) == 4000
     shares = {row.name: row for row in panels.lights.source_rows(facing)}
     for name, row in shares.items():
-        sent = report.source_photons[name if name in names else source_name(name)]
+        sent = statistics.source_photons[name if name in names else source_name(name)]
         assert row.sent == sent / 4000
         assert 4000 * row.allocated == pytest.approx(sent, abs=1.0) and sent > 10, name
     # Other factors change the shares before anything is rendered again, and the next render agrees.
@@ -92,10 +94,10 @@ def test_the_memory_that_is_expected_is_the_one_that_is_used(facing):
     """With the same settings exactly; with others, lists of photons grow that only a render can tell the length of."""
     add_light(facing, "SUN")
     report = rendered(facing)
-    assert memory_reading(export_settings(facing), 32, 32, report).total_bytes == report.memory_bytes
+    assert memory_reading(export_settings(facing), 32, 32, report).total_bytes == report.progress.memory_bytes
     facing.rppm.photons, facing.render.resolution_x = 8000, 64
     expected = memory_reading(export_settings(facing), 64, 32, report).total_bytes
-    assert expected == pytest.approx(rendered(facing).memory_bytes, rel=0.05)
+    assert expected == pytest.approx(rendered(facing).progress.memory_bytes, rel=0.05)
 
 
 def test_what_a_final_render_reports(facing):
@@ -103,10 +105,11 @@ def test_what_a_final_render_reports(facing):
     facing.rppm.samples = 3
     report = rendered(facing)
     assert report.kind is RenderKind.FINAL and (report.width, report.height) == (32, 32)
-    assert (report.iterations, report.photons, report.triangles) == (3, 12000, 2)
-    assert 0.0 < report.build_seconds < report.seconds and report.settings == export_settings(facing)
-    assert report.photons_per_second == pytest.approx(4000 * report.iterations_per_second)
-    assert report.photons_per_second * (report.seconds - report.build_seconds) == pytest.approx(12000)
+    progress = report.progress
+    assert (progress.iteration, progress.photons, report.triangles) == (3, 12000, 2)
+    assert 0.0 < progress.build_seconds < progress.elapsed_seconds and report.settings == export_settings(facing)
+    assert progress.photons_per_second == pytest.approx(4000 * progress.iterations_per_second)
+    assert progress.photons_per_second * (progress.elapsed_seconds - progress.build_seconds) == pytest.approx(12000)
     assert report.device in drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
     second = rendered(facing)
     kept = reports.reports_of(facing.session_uid)
@@ -163,9 +166,8 @@ def test_warnings_name_what_can_be_selected(facing):
     assert [thing.name for thing in bpy.context.selected_objects] == ["Flat"]
 
 
-def report(kind=RenderKind.FINAL, **values):
-    figures = {"iterations": 1, "photons": 1, "seconds": 1.0, "radius_meters": 1.0, "memory_bytes": 1}
-    return RenderReport(kind, 1, 1, RenderSettings(), **figures | values)
+def report(kind=RenderKind.FINAL, photons=1, **values):
+    return RenderReport(kind, 1, 1, RenderSettings(), Progress(1, 1, 1.0, photons), **values)
 
 
 def test_little_is_kept():
@@ -175,7 +177,7 @@ def test_little_is_kept():
         reports.record(scene, report(RenderKind.VIEWPORT))
     assert reports.reports_of(0) == reports.reports_of(2) == reports.SceneReports()
     kept = reports.reports_of(scene)
-    assert [final.photons for final in kept.finals] == [7, 6, 5, 4, 3]
+    assert [final.progress.photons for final in kept.finals] == [7, 6, 5, 4, 3]
     assert len(kept.finals[0].warnings) == reports.WARNINGS_KEPT and kept.finals[0].warning_count == 1000
     assert kept.latest is kept.viewport
 
@@ -266,7 +268,7 @@ def test_selecting_shows_the_tab_where_the_editor_lets_it(facing, kind):
     assert RPPM_OT_select_subject.execute(button, context) == {"FINISHED"} and editor.context == "RENDER"
 
 
-def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
+def test_a_viewport_session_reports_what_the_panels_show(facing, tmp_path):
     """Its status, as it comes from the renderer process, once it has settled."""
     add_light(facing, "SUN", "Sun")
     exported = export(facing)
@@ -281,21 +283,20 @@ def test_a_viewport_session_tells_what_the_panels_show(facing, tmp_path):
     finally:
         process.close()
     assert status.settled and not status.error
-    told = viewport_report(status, exported)
-    reports.record(facing.session_uid, told)
+    reported = viewport_report(status, exported)
+    reports.record(facing.session_uid, reported)
     kept = reports.reports_of(facing.session_uid)
-    assert kept.viewport == kept.latest == told and kept.finals == ()
-    assert told.photons_per_second == pytest.approx(status.photons_per_second, rel=0.01)
-    assert told.iterations_per_second == pytest.approx(status.iterations_per_second, rel=0.01)
+    assert kept.viewport == kept.latest == reported and kept.finals == ()
+    assert reported.progress == status.progress and reported.progress.photons_per_second > 0.0
     assert [(row.name, row.allocated, row.sent) for row in panels.lights.source_rows(facing)] == [("Sun", 1.0, 1.0)]
-    final = rendered(facing)
-    assert final.source_watts == told.source_watts and final.source_photons == told.source_photons
-    assert final.radius_meters == pytest.approx(told.radius_meters, rel=1e-6)
-    assert {final.density_estimation, told.density_estimation} <= {"GRID", "RASTERIZED"}
+    final, viewport = rendered(facing).photon_statistics, reported.photon_statistics
+    assert final.source_watts == viewport.source_watts and final.source_photons == viewport.source_photons
+    assert final.radius_meters == pytest.approx(viewport.radius_meters, rel=1e-6)
+    assert {final.density_estimation, viewport.density_estimation} <= {"GRID", "RASTERIZED"}
     shown = drawn(panels.performance.RPPM_PT_status, context_of(facing)).labels
     assert shown.index("Viewport") < shown.index("Final")
 
 
 def test_a_viewport_that_has_nothing_yet(facing):
-    told = viewport_report(SessionStatus(), export(facing))
-    assert told.iterations == 0 and told.photons_per_second == 0.0
+    reported = viewport_report(SessionStatus(), export(facing))
+    assert reported.progress.iteration == 0 and reported.progress.photons_per_second == 0.0

@@ -15,8 +15,8 @@ from rppm_addon.gl.context.context import Context
 from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
+from rppm_addon.session.render.frame_reading import read_frame
 from rppm_addon.session.render.observers import RenderObserver, observing
-from rppm_addon.session.render.renderer import read_frame
 from rppm_addon.session.render.results import Frame
 
 ITERATIONS = 3

@@ -16,7 +16,7 @@ from rppm_addon.blender.render_client import denoising_libraries as libraries_mo
 from rppm_addon.blender.render_client import renderer_process, renderer_thread
 from rppm_addon.blender.render_client.denoising_libraries import denoising_libraries
 from rppm_addon.denoising.places import Source
-from rppm_addon.session.transport.client import ProcessState
+from rppm_addon.session.client.client import ProcessState
 
 PANELS = (sampling.RPPM_PT_sampling_viewport_denoise, sampling.RPPM_PT_sampling_final_denoise)
 
@@ -93,6 +93,7 @@ class Process:
     def __init__(self):
         self.state, self.error, self.device, self.log_path = ProcessState.RUNNING, "", None, Path("renderer.log")
         self.restarted = 0
+        self.launcher = SimpleNamespace(denoisers=[])
 
     def restart(self):
         self.restarted += 1
@@ -117,7 +118,7 @@ def test_another_library_starts_the_process_anew(monkeypatch):
     process = Process()
     monkeypatch.setattr(renderer_process, "_process", process)
     renderer_process.libraries_changed()
-    assert process.denoisers == denoising_libraries() and process.restarted == 1
+    assert process.launcher.denoisers == denoising_libraries() and process.restarted == 1
     process.state = ProcessState.STOPPED
     renderer_process.libraries_changed()
     assert process.restarted == 1

@@ -10,8 +10,8 @@ from blender_scenes import add_mesh, add_node, add_object, export, link, new_mat
 from rppm_addon.blender.engine import preparing
 from rppm_addon.blender.export.images import images
 from rppm_addon.blender.render_client import renderer_process
+from rppm_addon.session.client.client import ProcessState
 from rppm_addon.session.placeholders.known_programs import programs_of
-from rppm_addon.session.transport.client import ProcessState
 
 
 @pytest.fixture

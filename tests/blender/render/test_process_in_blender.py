@@ -14,8 +14,8 @@ from support.sent_members import watch_sent_members
 
 import rppm_addon
 from rppm_addon.blender.render_client import renderer_process, renderer_thread
+from rppm_addon.session.client.client import ProcessState
 from rppm_addon.session.render.observers import RenderObserver, observing
-from rppm_addon.session.transport.client import ProcessState
 from rppm_addon.session.transport.sessions import SessionKind
 
 

@@ -9,7 +9,7 @@ import pytest
 from rppm_addon.blender.render_client.renderer_thread import RendererThread, RenderJob
 from rppm_addon.scene import Camera, Scene
 from rppm_addon.session.render import renderer as session_renderer
-from rppm_addon.session.render.renderer import Progress
+from rppm_addon.session.render.results import Progress
 
 
 class FakeRenderer:

@@ -96,7 +96,7 @@ def test_without_adaptive_radius_limits_are_those_given(mapper):
     """Automatic limits, given as the user's, are Eq. 3's to the bit."""
     mapper.build(many_photons(use_adaptive_radius=False))
     plain = run_until(mapper, 3)
-    low, high = mapper.learning.limits
+    low, high = mapper.learning.radius_schedule.limits
     mapper.build(many_photons(radius_minimum=low, radius_maximum=high))
     exact = run_until(mapper, 3)
     assert (plain.radius_factors == 1.0).all() and (exact.radius_factors == 1.0).all()

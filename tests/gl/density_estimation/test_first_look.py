@@ -25,7 +25,8 @@ def camera_of(scene, name: str):
 def radii(mapper, scene) -> tuple[float, float, float]:
     mapper.build(scene)
     mapper.iterate()
-    return (*mapper.learning.limits, mapper.learning.widest_radius)
+    schedule = mapper.learning.radius_schedule
+    return (*schedule.limits, schedule.widest_radius)
 
 
 @pytest.mark.parametrize("name", ["perspective", "orthographic", "aperture", "crop"])

@@ -79,12 +79,12 @@ def test_radii_are_those_of_the_whole_time(mapper):
     scene = open_for(room(), instances=[way(BALL, room().instances[BALL].matrix, 4.0, 0.0, 3.0)])
     mapper.update(scene)
     limits, bounds = (
-        mapper.learning.limits,
+        mapper.learning.radius_schedule.limits,
         (mapper.device_scene.geometry.bounds_low, mapper.device_scene.geometry.bounds_high),
     )
     for _ in range(3):
         mapper.iterate()
-        assert mapper.learning.limits == limits
+        assert mapper.learning.radius_schedule.limits == limits
         np.testing.assert_allclose(
             (mapper.device_scene.geometry.bounds_low, mapper.device_scene.geometry.bounds_high), bounds, rtol=1e-6
         )

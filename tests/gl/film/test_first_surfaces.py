@@ -7,8 +7,8 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
-from rppm_addon.session.render.renderer import read_combined
-from rppm_addon.session.viewport.viewport_renderer import shown_picture
+from rppm_addon.session.render.frame_reading import read_combined
+from rppm_addon.session.viewport.presenter import film_picture
 
 
 def behind_a_pane(material: Material, floor: bool = True) -> Scene:
@@ -53,14 +53,14 @@ def test_a_viewport_shows_the_pass_of_its_settings(mapper):
     scene.exposure, scene.settings.passes = 3.0, ("Depth",)
     mapper.build(scene)
     mapper.iterate()
-    picture = shown_picture(mapper.film, scene)
+    picture = film_picture(mapper.film, scene)
     np.testing.assert_allclose(picture[..., :3], 2.0, rtol=1e-4)  # as gray, and not exposed
     assert (picture[..., 3] == 1.0).all()
     scene.settings.passes = ("Normal",)
     mapper.build(scene)
     mapper.iterate()
-    np.testing.assert_allclose(shown_picture(mapper.film, scene)[8, 8], (0, 0, 1, 1), atol=1e-3)
+    np.testing.assert_allclose(film_picture(mapper.film, scene)[8, 8], (0, 0, 1, 1), atol=1e-3)
     scene.settings.passes = ()
     mapper.build(scene)
     mapper.iterate()
-    np.testing.assert_array_equal(shown_picture(mapper.film, scene), read_combined(mapper.film, 3.0))
+    np.testing.assert_array_equal(film_picture(mapper.film, scene), read_combined(mapper.film, 3.0))

@@ -121,7 +121,12 @@ def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
             photons = mapper.read_photons()
             useful += float((photons["depth"] & PHOTON_CONTRIBUTED != 0).any(axis=0).mean()) / 4
             means.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
-        results[learning] = np.mean(means), np.std(means, ddof=1) / 2, useful, mapper.learning.wide_radius
+        results[learning] = (
+            np.mean(means),
+            np.std(means, ddof=1) / 2,
+            useful,
+            mapper.learning.radius_schedule.wide_radius,
+        )
         print(learning, results[learning])
     (plain, plain_error, plain_useful, plain_radius), (guided, guided_error, useful, radius) = results.values()
     assert abs(guided - plain) < 4 * math.hypot(plain_error, guided_error) + 0.01 * plain

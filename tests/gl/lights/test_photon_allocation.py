@@ -26,7 +26,7 @@ def test_sources_have_their_power_and_photons(renderer):
     scene.materials[3] = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)))
     scene.world = World(np.full(3, 0.01))
     statistics = renderer.render(scene).statistics
-    watts, photons = statistics.source_watts, statistics.source_photons
+    watts, photons = statistics.photon_statistics.source_watts, statistics.photon_statistics.source_photons
     assert set(watts) == set(photons) == {source_name("light"), source_name("point"), SURFACES, ENVIRONMENT}
     assert watts[source_name("light")] == pytest.approx(math.pi * 12 * 0.25, rel=1e-3)
     assert watts[source_name("point")] == pytest.approx(4 * math.pi * 12 / 32, rel=1e-6)
@@ -46,20 +46,25 @@ def test_a_lamp_keeps_photons_beside_a_far_larger_world(renderer):
     scene = scenes.room(8, **SETTINGS)
     scene.world = World(np.full(3, 1e5))
     statistics = renderer.render(scene).statistics
-    assert statistics.source_watts[ENVIRONMENT] > 1e6 * statistics.source_watts[source_name("light")]
-    assert statistics.source_photons[source_name("light")] == pytest.approx(4000 / 16, abs=1.0)
+    assert (
+        statistics.photon_statistics.source_watts[ENVIRONMENT]
+        > 1e6 * statistics.photon_statistics.source_watts[source_name("light")]
+    )
+    assert statistics.photon_statistics.source_photons[source_name("light")] == pytest.approx(4000 / 16, abs=1.0)
 
 
 def test_lights_of_one_name_are_one_source(renderer):
     scene = scenes.room(8, **SETTINGS)
     scene.lights.append(scene.lights[0])
     statistics = renderer.render(scene).statistics
-    assert statistics.source_photons == {source_name("light"): 4000}
-    assert statistics.source_watts[source_name("light")] == pytest.approx(2 * math.pi * 12 * 0.25, rel=1e-3)
+    assert statistics.photon_statistics.source_photons == {source_name("light"): 4000}
+    assert statistics.photon_statistics.source_watts[source_name("light")] == pytest.approx(
+        2 * math.pi * 12 * 0.25, rel=1e-3
+    )
 
 
 def test_a_dark_scene_has_no_sources(renderer):
     scene = scenes.room(8, **SETTINGS)
     scene.lights.clear()
     statistics = renderer.render(scene).statistics
-    assert statistics.source_watts == statistics.source_photons == {}
+    assert statistics.photon_statistics.source_watts == statistics.photon_statistics.source_photons == {}

@@ -88,4 +88,11 @@ def readings() -> dict[str, object]:
     scene = window().scene
     reports = importlib.import_module(f"{_addon()}.rppm_addon.blender.reports").reports_of(scene.session_uid)
     found = reports.viewport
-    return {} if found is None else {"iterations": found.iterations, "watts": found.source_watts}
+    return (
+        {}
+        if found is None
+        else {
+            "iterations": found.progress.iteration,
+            "watts": found.photon_statistics.source_watts,
+        }
+    )

@@ -3,7 +3,7 @@
 
 import ctypes
 
-from rppm_addon.session.transport.job_object import ExtendedLimits
+from rppm_addon.session.client.job_object import ExtendedLimits
 
 
 def test_limits_lie_where_windows_looks_for_them():

@@ -7,8 +7,8 @@ import pytest
 from rppm_addon.integrator.common.low_discrepancy import van_der_corput
 from rppm_addon.integrator.film.noise_estimate import LEAST_MEASURED, count_in_half, is_in_half
 from rppm_addon.scene import RenderSettings
-from rppm_addon.session.render.noise_threshold import NoiseThreshold
-from rppm_addon.session.render.remaining_time import RemainingTime
+from rppm_addon.session.limits.noise_threshold import NoiseThreshold
+from rppm_addon.session.limits.remaining_time import RemainingTime
 
 
 def threshold_of(value=0.1, least=8, **settings):

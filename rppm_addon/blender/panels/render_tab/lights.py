@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import bpy
 
 from ....integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
+from ....session.render.results import PhotonStatistics
 from ...readings import photon_allocation
-from ...reports import RenderReport, reports_of
+from ...reports import reports_of
 from ..base import RppmPanel
 
 LIGHTS_SHOWN = 24
@@ -28,29 +29,30 @@ class SourceRow:
     """Fraction of the photons of the last render's last iteration, which knew what photons are good for."""
 
 
-def powers_of(scene: bpy.types.Scene) -> RenderReport | None:
-    """The last report that tells the lights' powers."""
+def source_statistics(scene: bpy.types.Scene) -> PhotonStatistics | None:
+    """Return the photon statistics of the last render that has light sources; None if there is none."""
     reports = reports_of(scene.session_uid)
     candidates = (reports.latest, reports.viewport, *reports.finals)
-    return next((report for report in candidates if report is not None and report.source_watts), None)
+    found = (report.photon_statistics for report in candidates if report is not None)
+    return next((statistics for statistics in found if statistics.source_watts), None)
 
 
 def source_rows(scene: bpy.types.Scene) -> list[SourceRow]:
     """All light sources that the last render knew, and the lights that it did not know."""
-    report = powers_of(scene)
+    statistics = source_statistics(scene)
     rows: list[SourceRow] = []
     listed: set[bpy.types.Light] = set()
-    if report is not None:
+    if statistics is not None:
         # By name rather than by all of the scene's objects, which may be many thousands.
-        lights = {name: _light_of(name) for name in report.source_watts}
+        lights = {name: _light_of(name) for name in statistics.source_watts}
         weights = {name: light.rppm.photon_weight for name, light in lights.items() if light is not None}
-        allocation = photon_allocation(report.source_watts, weights)
-        emitted = max(sum(report.source_photons.values()), 1)
-        for name in report.source_watts:
+        allocation = photon_allocation(statistics.source_watts, weights)
+        emitted = max(sum(statistics.source_photons.values()), 1)
+        for name in statistics.source_watts:
             icon = {SURFACES: "MATERIAL", ENVIRONMENT: "WORLD"}.get(name, "LIGHT")
             shown = _object_name(name)
             rows.append(
-                SourceRow(shown, icon, lights[name], allocation[name], report.source_photons.get(name, 0) / emitted)
+                SourceRow(shown, icon, lights[name], allocation[name], statistics.source_photons.get(name, 0) / emitted)
             )
         listed = {light for light in lights.values() if light is not None}
         rows.sort(key=lambda row: -row.allocated)

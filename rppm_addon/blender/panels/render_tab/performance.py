@@ -94,19 +94,20 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
 
 
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
-    reading(column, "Samples", f"{report.iterations} of {report.settings.iterations}")
-    if report.noise > 0.0:
-        reading(column, "Noise", noise_text(report.noise, report.settings.adaptive_threshold))
-    reading(column, "Photons", f"{count_text(report.photons_per_iteration)} a sample")
-    reading(column, "Radius", length_text(scene, report.radius_meters))
-    reading(column, "Memory", bytes_text(report.memory_bytes))
-    reading(column, "Speed", f"{rate_text(report.iterations_per_second)} samples/s")
-    reading(column, "", f"{rate_text(report.photons_per_second)} photons/s")
-    reading(column, "Time", seconds_text(report.seconds))
-    reading(column, "Building", seconds_text(report.build_seconds))
+    progress, photons = report.progress, report.photon_statistics
+    reading(column, "Samples", f"{progress.iteration} of {report.settings.iterations}")
+    if progress.noise > 0.0:
+        reading(column, "Noise", noise_text(progress.noise, report.settings.adaptive_threshold))
+    reading(column, "Photons", f"{count_text(progress.photons_per_iteration)} a sample")
+    reading(column, "Radius", length_text(scene, photons.radius_meters))
+    reading(column, "Memory", bytes_text(progress.memory_bytes))
+    reading(column, "Speed", f"{rate_text(progress.iterations_per_second)} samples/s")
+    reading(column, "", f"{rate_text(progress.photons_per_second)} photons/s")
+    reading(column, "Time", seconds_text(progress.elapsed_seconds))
+    reading(column, "Building", seconds_text(progress.build_seconds))
     for title, name, taken in (
-        ("Density", "density_estimation", report.density_estimation),
-        ("First Hits", "first_photon_hits", report.first_photon_hits),
+        ("Density", "density_estimation", photons.density_estimation),
+        ("First Hits", "first_photon_hits", photons.first_photon_hits),
     ):
         if taken:
             reading(column, title, scene.rppm.bl_rna.properties[name].enum_items[taken].name)
@@ -135,13 +136,13 @@ class RPPM_PT_last_renders(RppmPanel, bpy.types.Panel):
 
 _COMPARED = (
     ("Resolution", lambda report: f"{report.width} x {report.height}"),
-    ("Samples", lambda report: str(report.iterations)),
-    ("Photons", lambda report: count_text(report.photons)),
-    ("Time", lambda report: seconds_text(report.seconds)),
-    ("Building", lambda report: seconds_text(report.build_seconds)),
-    ("Photons/s", lambda report: rate_text(report.photons_per_second)),
-    ("Samples/s", lambda report: rate_text(report.iterations_per_second)),
-    ("Memory", lambda report: bytes_text(report.memory_bytes)),
+    ("Samples", lambda report: str(report.progress.iteration)),
+    ("Photons", lambda report: count_text(report.progress.photons)),
+    ("Time", lambda report: seconds_text(report.progress.elapsed_seconds)),
+    ("Building", lambda report: seconds_text(report.progress.build_seconds)),
+    ("Photons/s", lambda report: rate_text(report.progress.photons_per_second)),
+    ("Samples/s", lambda report: rate_text(report.progress.iterations_per_second)),
+    ("Memory", lambda report: bytes_text(report.progress.memory_bytes)),
     ("Triangles", lambda report: count_text(report.triangles)),
     ("Warnings", lambda report: str(report.warning_count)),
 )

@@ -51,7 +51,11 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
         reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.preview_samples}")
         report = reports_of(scene.session_uid).latest
         if report is not None:
-            reading(column, "Rendered", f"{length_text(scene, report.radius_meters)} in sample {report.iterations}")
+            reading(
+                column,
+                "Rendered",
+                f"{length_text(scene, report.photon_statistics.radius_meters)} in sample {report.progress.iteration}",
+            )
 
 
 class RPPM_PT_animation(RppmPanel, bpy.types.Panel):

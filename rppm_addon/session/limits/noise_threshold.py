@@ -35,12 +35,12 @@ class NoiseThreshold:
         return self.threshold > 0.0 and iterations >= LEAST_MEASURED and iterations % MEASURED_EVERY == 0
 
     def add(self, iterations: int, noise: float) -> None:
-        """Take note of what was measured."""
+        """Record a measurement."""
         self._measured.insert(0, (iterations, noise))
 
     @property
     def noise(self) -> float:
-        """When it was measured last; 0 before."""
+        """Noise when it was measured last; 0 before."""
         return self._measured[0][1] if self._measured else 0.0
 
     @property

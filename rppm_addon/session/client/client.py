@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The renderer's process for whoever shows what it renders. No call waits for it but close()."""
+"""The renderer's process as Blender uses it. No call waits for the process but close()."""
 
 import collections
-import contextlib
 import enum
 import logging
-import os
 import threading
 import time
 from collections.abc import Sequence
@@ -17,15 +15,13 @@ from ...denoising.places import LibraryPlace
 from ...gl.context.context import DeviceInformation
 from ...gl.context.devices import Device
 from ...scene.scene import Scene
-from .child_process import ChildProcess
+from ..transport.sessions import SessionKind
 from .client_session import PreparationSession, RenderSession, Session, ViewportSession
 from .connection import Connection
-from .sessions import SessionKind
+from .launcher import ProcessLauncher
 
 logger = logging.getLogger(__name__)
 
-LARGEST_LOG = 1 << 24
-"""Bytes; then the log begins anew."""
 _UNASKED = {SessionKind.PREVIEW, SessionKind.PREPARATION}
 """Kinds of sessions that are opened without a request of the user."""
 _AnySession = TypeVar("_AnySession", bound=Session)
@@ -37,32 +33,32 @@ class ProcessState(enum.Enum):
     """Whether there is a renderer process."""
 
     STOPPED = "STOPPED"
-    """It is started when a session is opened."""
+    """A process is started when a session is opened."""
     STARTING = "STARTING"
     RUNNING = "RUNNING"
     FAILED = "FAILED"
-    """It ended too often or cannot run here; ``error`` says why. restart() and new sessions but previews try again."""
+    """The process ended too often or cannot run here; ``error`` says why. restart() and most new sessions try again."""
 
 
 @dataclass(frozen=True)
 class Timeouts:
-    """How long to wait for the process, seconds."""
+    """Seconds to wait for the process."""
 
     start: float = 60.0
-    """Until it has opened the device; the first start after an installation reads much from the disk."""
+    """Until the process has opened the device. The first start after an installation reads much from the disk."""
     answer: float = 300.0
-    """Until it answers a ping. It does so between two pieces of work; compiling a large material is one."""
+    """Until the process answers a ping, which it does between two slices; a large material may compile for long."""
     leave: float = 1.5
-    """Until it has left when it was asked to."""
+    """Until the process has ended after the message to leave."""
     ping: float = 2.0
-    """Between two pings."""
+    """Time between two pings."""
 
 
 class RendererProcess:
-    """Owns the process: starts it when it is first needed, starts it anew when it dies, and ends it.
+    """Starts the process when it is first needed, restarts it when it dies, and ends it.
 
-    A thread of its own, the keeper, starts and ends processes; with each process come a thread that writes and one
-    that reads. What they share is guarded by ``changed``, which is never held while anything waits.
+    One thread, the keeper, starts and ends processes; each process has a thread that writes and one that reads. The
+    condition ``changed`` guards their common state, and is never held while anything waits.
     """
 
     def __init__(
@@ -87,17 +83,11 @@ class RendererProcess:
         """Why the process ended last, one line; empty while all is well."""
         self.device: DeviceInformation | None = None
         self.is_listing = False
-        """Whether more will be known of the other devices."""
-        self.log_path = log_path
+        """Whether the process still opens the other devices."""
+        self.launcher = ProcessLauncher(python, folders, log_path, denoisers)
         self.restarts = 0
         self.changed = threading.Condition()
-        self._python = list(python)
-        self._folders = list(folders)
         self._timeouts = timeouts or Timeouts()
-        self.denoisers = list(denoisers)
-        """Denoiser libraries that the next process is told of when it starts."""
-        self.environment: dict[str, str] = {}
-        """Variables that it has beside Blender's own."""
         self.sessions: dict[int, Session] = {}
         self._numbers = 0
         self.outbox: collections.deque[tuple[str, dict]] = collections.deque()
@@ -105,19 +95,24 @@ class RendererProcess:
         self._leaving = False
         self._restarting = False
 
-    def open(self, kind: SessionKind) -> ViewportSession | RenderSession:
-        """A new session for pictures; starts the process if there is none.
+    @property
+    def log_path(self) -> Path:
+        """The file that has what the process logs."""
+        return self.launcher.log_path
 
-        After a failure a viewport or a final render, which users ask for, tries again; previews come by themselves.
+    def open(self, kind: SessionKind) -> ViewportSession | RenderSession:
+        """Open a session for pictures; start the process if there is none.
+
+        After a failure, viewports and final renders try again, since users request them; previews do not.
         """
         if kind is SessionKind.VIEWPORT:
             return self._open(ViewportSession, kind)
         return self._open(RenderSession, kind)
 
     def prepare(self, scene: Scene) -> None:
-        """Have the programs for a scene compiled before anybody waits for them; starts the process if there is none.
+        """Compile the programs for a scene before it is rendered; start the process if there is none.
 
-        Only the settings and the materials' graphs count. After a failure nothing is done.
+        Only the settings and the materials' graphs matter. After a failure nothing is done.
         """
         self._open(PreparationSession, SessionKind.PREPARATION).show(scene, 1, False)
 
@@ -137,7 +132,7 @@ class RendererProcess:
     def restart(self, lists_devices: bool = False) -> None:
         """End the process if there is one, and start a new one that takes over the open sessions.
 
-        lists_devices: have it open each device for a moment; until it has, ``is_listing`` is set.
+        lists_devices: whether the process opens each device for a moment; until it has, ``is_listing`` is set.
         """
         with self.changed:
             self.is_listing = lists_devices
@@ -150,7 +145,7 @@ class RendererProcess:
                 self.changed.notify_all()
 
     def close(self) -> None:
-        """End the process and all sessions. Waits for it, but a few seconds at the most."""
+        """End the process and all sessions. Waits for the process, a few seconds at most."""
         with self.changed:
             self._end_sessions()
             keeper = self._keeper
@@ -166,13 +161,13 @@ class RendererProcess:
     # For sessions and the connection, with ``changed`` held.
 
     def post(self, kind: str, **content: object) -> None:
-        """Have a message sent to the process, if there is one; a new one gets all that it must know."""
+        """Queue a message to the process, if there is one. A new process is introduced to all sessions instead."""
         if self.state is ProcessState.RUNNING:
             self.outbox.append((kind, content))
             self.changed.notify_all()
 
     def greeted(self, device: DeviceInformation) -> None:
-        """A process has opened the device: tell it of the sessions."""
+        """Announce the sessions to a process that has opened the device."""
         self.device = device
         self.state = ProcessState.RUNNING
         self.outbox.clear()
@@ -184,7 +179,7 @@ class RendererProcess:
         self.changed.notify_all()
 
     def devices_listed(self, devices: list[Device]) -> None:
-        """A process has opened each device."""
+        """Take the list of devices, each of which the process has opened."""
         self.is_listing = False
         if self.device is not None:
             self.device.devices = devices
@@ -211,14 +206,14 @@ class RendererProcess:
     # In the keeper's thread.
 
     def _keep(self) -> None:
-        self._begin_log()
+        self.launcher.begin_log()
         while True:
             reason, again = self._run_process()
             if reason:
                 logger.warning("%s", reason)  # not where Blender could wait for it
             with self.changed:
                 self.device = None
-                self.is_listing &= self._restarting  # what a driver ends is not asked for again
+                self.is_listing &= self._restarting  # listing is not tried again after a driver's crash
                 if self._leaving:
                     self._end_sessions()
                     self.state, self._keeper = ProcessState.STOPPED, None
@@ -227,7 +222,7 @@ class RendererProcess:
                 if self._restarting:
                     self._restarting = False
                     continue
-                self.error = f"{reason}; its log is {self.log_path}"
+                self.error = f"{reason}; its log is {self.launcher.log_path}"
                 if not again or self.restarts >= MOST_RESTARTS:
                     self.state, self._keeper = ProcessState.FAILED, None
                     for session in self.sessions.values():
@@ -235,23 +230,10 @@ class RendererProcess:
                     return
                 self.restarts += 1
 
-    def _begin_log(self) -> None:
-        try:
-            self.log_path.parent.mkdir(parents=True, exist_ok=True)
-            self.log_path.write_bytes(b"")
-        except OSError as error:
-            logger.warning("the log cannot be written: %s", error)
-
-    def _limit_log(self) -> None:
-        """A driver that complains all the time must not fill the disk; the process appends, so it can go on."""
-        with contextlib.suppress(OSError):
-            if self.log_path.stat().st_size > LARGEST_LOG:
-                os.truncate(self.log_path, 0)
-
     def _run_process(self) -> tuple[str, bool]:
-        """Start a process and see to it until it ends: why it did, and whether another one may do better."""
+        """Run a process to its end. Returns why it ended and whether another one may succeed."""
         try:
-            child = ChildProcess(self._python, self._folders, self.log_path, self.denoisers, self.environment)
+            child = self.launcher.start()
         except OSError as error:
             return f"The renderer process cannot be started ({error})", False
         with self.changed:
@@ -276,7 +258,7 @@ class RendererProcess:
     def _watch(self, connection: Connection) -> str | None:
         """Wait until a process must be ended or has ended.
 
-        Returns what it is to be blamed for, "" if it just ended, and None if it is to leave.
+        Returns why it must be ended, "" if it has ended by itself, and None if it is to leave.
         """
         timeouts, started = self._timeouts, time.monotonic()
         while not self._leaving and not self._restarting:
@@ -296,7 +278,7 @@ class RendererProcess:
             else:
                 wait = connection.answered_at + timeouts.ping - now
                 if wait <= 0.0:
-                    self._limit_log()
+                    self.launcher.limit_log()
                     connection.pinged_at = now
                     self.post("ping")
                     continue

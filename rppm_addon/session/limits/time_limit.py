@@ -22,7 +22,7 @@ class TimeLimit:
         self._seconds: collections.deque[float] = collections.deque(maxlen=_REMEMBERED)
 
     def add(self, seconds: float, photons: int, next_photons: int) -> None:
-        """Take note of an iteration with so many photons; the next one has ``next_photons``."""
+        """Record an iteration with so many photons; the next one has ``next_photons``."""
         # Measured in scenes of the usual kind, about half of an iteration's time goes with the number of its photons.
         self._seconds.append(seconds * (1.0 + next_photons / max(photons, 1)) / 2.0)
 
@@ -44,7 +44,7 @@ class TimeLimit:
     def may_cut(self, now: float) -> bool:
         """Whether an iteration that begins now is to be given up should it take longer than expected.
 
-        The first one never is, as there would be no picture, or a render that goes on would never come further.
+        The first one never is: there would be no picture, or a continued render would make no progress.
         """
         return self.limit > 0.0 and bool(self._seconds) and now + 2.0 * self._expected > self.limit
 

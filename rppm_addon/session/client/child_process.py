@@ -13,11 +13,11 @@ from typing import BinaryIO
 
 from ...denoising.places import LibraryPlace
 from ...scene.scene import Scene
-from .arrays import pack
+from ..transport.arrays import pack
+from ..transport.protocol import VERSION, frame_message, read_message
+from ..transport.shared_memory import SharedBlock
+from ..transport.transfer import Part, SceneSender
 from .job_object import end_with_this_process
-from .protocol import VERSION, frame_message, read_message
-from .shared_memory import SharedBlock
-from .transfer import Part, SceneSender
 
 _BOOTSTRAP = Path(__file__).parents[1] / "worker" / "bootstrap.py"
 if sys.platform == "win32":
@@ -27,7 +27,7 @@ else:
 
 
 class ProcessEnded(Exception):
-    """There is nobody to send to any more; whoever reads from the process learns why."""
+    """The process has ended and receives no more messages; reading from it says why."""
 
 
 class ChildProcess:
@@ -64,7 +64,7 @@ class ChildProcess:
     # In the writing thread.
 
     def greet(self) -> None:
-        """Say who is there; the process answers when it has opened the device."""
+        """Send the first message; the process answers when it has opened the device."""
         self.send("hello", version=VERSION, path=self._folders, denoisers=self._denoisers)
 
     def send(self, kind: str, **content: object) -> None:
@@ -117,7 +117,7 @@ class ChildProcess:
         return read_message(self._process.stdout)
 
     def taken(self, session: int, number: int) -> None:
-        """The process has copied a snapshot's arrays."""
+        """Free the arrays of a snapshot, which the process has copied."""
         with self._lock:
             blocks = self._blocks.pop((session, number), ())
         for block in blocks:
@@ -141,14 +141,14 @@ class ChildProcess:
             self.taken(session, number)
 
     def close_pipes(self) -> None:
-        """After the threads that use them have ended."""
+        """Close the pipes, after the threads that use them have ended."""
         for pipe in (self._process.stdin, self._process.stdout):
             with contextlib.suppress(OSError):
                 pipe.close()
 
     @property
     def ending(self) -> str:
-        """How the process ended, in words."""
+        """Words for how the process ended."""
         code = self._process.poll()
         if code is None:
             return "stopped answering"
@@ -159,7 +159,7 @@ class ChildProcess:
 
 
 def _opened(log_path: Path) -> BinaryIO:
-    """The log, to be appended to, or nothing where it cannot be written: that keeps nobody from rendering."""
+    """Open the log to append to it, or the null device: a log that cannot be written is no reason not to render."""
     try:
         log_path.parent.mkdir(parents=True, exist_ok=True)
         return log_path.open("ab")

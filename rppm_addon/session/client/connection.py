@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The talk with one renderer process: a thread that writes, a thread that reads."""
+"""The connection to one renderer process: a thread that writes and a thread that reads."""
 
 import collections
 import functools
@@ -11,46 +11,46 @@ from typing import Any, Protocol
 
 from ...gl.context.context import DeviceInformation
 from ...gl.context.devices import Device
+from ..transport.protocol import FROM_CHILD, VERSION, ProtocolError, check_message
+from ..transport.received import received
 from .child_process import ChildProcess, ProcessEnded
 from .client_session import Session, SessionOwner
-from .protocol import FROM_CHILD, VERSION, ProtocolError, check_message
-from .received import received
 
 logger = logging.getLogger(__name__)
 
 _MOST_MESSAGES = 100
 _MESSAGES_SECONDS = 0.05
-"""A process that sends more messages in this time is read no faster: Blender's own threads want to run."""
+"""Most messages that are read in this time, so that Blender's own threads run."""
 
 
 class ConnectionOwner(SessionOwner, Protocol):
-    """Whoever keeps the process, as the talk with it sees them."""
+    """Owner of the process that is connected."""
 
     outbox: collections.deque[tuple[str, dict]]
     """Messages to be sent, the oldest first."""
 
     def greeted(self, device: DeviceInformation) -> None:
-        """The process has opened the device; ``changed`` is held."""
+        """Announce the sessions to the process, which has opened the device; ``changed`` is held."""
 
     def devices_listed(self, devices: list[Device]) -> None:
-        """More is known of the devices that there are; ``changed`` is held."""
+        """Take the list of devices, each of which the process has opened; ``changed`` is held."""
 
 
 class Connection:
     """Connection to a process while it runs, and its state; guarded by the owner's ``changed``."""
 
     def __init__(self, owner: ConnectionOwner, child: ChildProcess) -> None:
-        """Start to talk with a process that has just been started."""
+        """Connect to a process that has just been started."""
         self.ready = False
         """Whether the process has opened the device."""
         self.ended = False
-        """Whether nothing more will come from it."""
+        """Whether nothing more comes from the process."""
         self.reason = ""
-        """Why it must be ended, if it is to blame."""
+        """Why the process must be ended; empty if it need not."""
         self.usable = True
-        """Whether another process may do better."""
+        """Whether another process may succeed."""
         self.pinged_at: float | None = None
-        """When it was last asked whether it lives, until it has answered."""
+        """Time of the last ping, until it is answered."""
         self.answered_at = time.monotonic()
         self._owner = owner
         self._child = child
@@ -62,7 +62,7 @@ class Connection:
             thread.start()
 
     def finish(self) -> None:
-        """Wait for the threads; the process has ended."""
+        """Wait for the threads, after the process has ended."""
         with self._owner.changed:
             self.ended = True
             self._owner.changed.notify_all()

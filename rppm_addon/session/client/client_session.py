@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions as whoever shows them sees them."""
+"""Blender's side of the sessions in the renderer's process."""
 
 import dataclasses
 import queue
@@ -9,34 +9,34 @@ from typing import Protocol
 
 from ...scene.scene import Scene
 from ..render.results import Progress, RenderStatistics
-from .arrays import unpack
-from .frames import FrameReader, SharedFrame
-from .kept_renders import KeptRender
-from .protocol import ProtocolError
-from .received import received
-from .sessions import SessionKind, SessionStatus
-from .shared_memory import SharedBlock
+from ..transport.arrays import unpack
+from ..transport.frames import FrameReader, SharedFrame
+from ..transport.kept_renders import KeptRender
+from ..transport.protocol import ProtocolError
+from ..transport.received import received
+from ..transport.sessions import SessionKind, SessionStatus
+from ..transport.shared_memory import SharedBlock
 
 
 class SessionOwner(Protocol):
-    """The process that renders sessions, as they see it."""
+    """The process that renders sessions."""
 
     changed: threading.Condition
-    """Guards all that sessions and the process share."""
+    """Guards the state that sessions and the process have in common."""
     sessions: dict[int, "Session"]
-    """The open ones by their numbers."""
+    """Open sessions by number."""
     error: str
-    """Why the process before has ended, if it did."""
+    """Why the previous process has ended; empty if there was none."""
 
     def post(self, kind: str, **content: object) -> None:
-        """Have a message sent to the process, if there is one."""
+        """Queue a message to the process, if there is one."""
 
     def close_session(self, session: "Session") -> None:
         """Forget a session."""
 
 
 class Session:
-    """Something rendered in the renderer's process. All methods return at once."""
+    """A session in the renderer's process. No method waits for the process."""
 
     def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         self.kind = kind
@@ -46,14 +46,14 @@ class Session:
         self._due = False
         """Whether the snapshot is still to be sent."""
         self._on_its_way = 0
-        """The number of the snapshot that was sent and is not yet taken; 0 when there is none."""
+        """Number of the snapshot that was sent and is not yet received; 0 when there is none."""
         self._sent = 0
 
     def show(self, scene: Scene, generation: int, navigating: bool) -> None:
-        """Render ``scene`` from now on, which nobody may change any more.
+        """Render ``scene`` from now on. It must not be changed any more.
 
-        Of scenes that come faster than they can be sent, the newest is rendered. Members that earlier scenes had
-        are not sent again. ``generation`` grows with each scene; ``navigating`` prefers speed to sharpness.
+        If scenes come faster than they can be sent, only the newest is sent. Members that earlier scenes had are not
+        sent again. ``generation`` grows with each scene; ``navigating`` prefers speed to resolution.
         """
         with self.process.changed:
             self._snapshot = scene, generation, navigating
@@ -61,7 +61,7 @@ class Session:
             self.process.changed.notify_all()
 
     def close(self) -> None:
-        """Render this no more."""
+        """End the session."""
         self.process.close_session(self)
 
     @property
@@ -73,7 +73,7 @@ class Session:
     # For the process's threads, with its ``changed`` held.
 
     def introduce(self) -> None:
-        """Tell a new process of this session; its newest scene is to be sent again."""
+        """Open the session in a new process, and send its newest scene again."""
         self.process.post("open", session=self.number, session_kind=self.kind.name)
         self._due = self._snapshot is not None
         self._on_its_way = 0
@@ -91,46 +91,46 @@ class Session:
         return self._sent, *self._snapshot
 
     def snapshot_taken(self, number: int) -> None:
-        """The process has the scene of this number: the next one may be sent."""
+        """Record that the process has the scene of this number: the next one may be sent."""
         if number == self._on_its_way:
             self._on_its_way = 0
 
     def release(self) -> None:
-        """The session is closed: keep nothing that is large."""
+        """Free all that is large; the session is closed."""
         self._snapshot = None
         self._due = False
 
     def fail(self, text: str) -> None:
-        """Nothing more will come until another scene is shown, or another process is started."""
+        """Report an error. Nothing more comes until another scene is shown, or another process is started."""
         raise NotImplementedError
 
     # In the reading thread.
 
     def receive(self, kind: str, content: dict) -> None:
-        """A message of the process. Raises ProtocolError, or what unpacking it raises, for malformed data."""
+        """Handle a message of the process. Raises ProtocolError, or an error of unpacking, for malformed data."""
         raise NotImplementedError
 
 
 class ViewportSession(Session):
-    """A picture that grows, of a scene that changes."""
+    """A viewport: pictures that improve, of a scene that changes."""
 
     def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.status = SessionStatus()
-        """The newest that the process has reported."""
+        """The newest status that the process has reported."""
         self._newest: SharedFrame | None = None
         self._paused = False
         self._reader: FrameReader | None = None
 
     def pause(self, paused: bool) -> None:
-        """Stop improving the picture, or go on."""
+        """Stop improving the picture, or continue."""
         with self.process.changed:
             if paused != self._paused:
                 self._paused = paused
                 self.process.post("pause", session=self.number, paused=paused)
 
     def newest(self) -> SharedFrame | None:
-        """The newest complete frame, never of an older generation than one given before; None before the first."""
+        """Return the newest complete frame, never of an older generation than a previous one; None before the first."""
         return self._newest
 
     def introduce(self) -> None:
@@ -167,7 +167,7 @@ class ViewportSession(Session):
     def _receive_frame(
         self, slot: int, generation: int, sequence: int, width: int, height: int, progress: float
     ) -> None:
-        """Take an announced frame, unless it is none of a scene to be seen."""
+        """Copy an announced frame, unless it is older than the last one or of an unknown scene."""
         if not 0.0 <= progress <= 1.0:
             raise ProtocolError(f"a frame cannot show {progress} of a picture")
         reader, shown, newest = self._reader, self._snapshot, self._newest
@@ -182,25 +182,25 @@ class ViewportSession(Session):
 
 
 class RenderSession(Session):
-    """Scenes that are each rendered once, to their end, one after the other."""
+    """Final renders: scenes that are rendered to their end, one after the other."""
 
     def __init__(self, process: SessionOwner, number: int, kind: SessionKind) -> None:
         super().__init__(process, number, kind)
         self.events: queue.SimpleQueue[tuple[str, dict]] = queue.SimpleQueue()
-        """Messages of the process, in the protocol's words; "started" when there is a process."""
+        """Messages of the process by kind; "started" when there is a process."""
         self.introduced = False
-        """Whether there has been a process that knows the session; scenes shown to another one will reach it."""
+        """Whether a process has opened the session. From then on scenes reach each new process."""
         self._snapshots: tuple[float, ...] = ()
         self._checkpoint = ""
         self._stopping = False
         self._generation = 0
         self._kept: KeptRender | None = None
-        """Render that another process is to go on with."""
-        self._given: SharedBlock | None = None
-        """Shared memory that the other process reads the kept render from."""
+        """State with which another process continues the render."""
+        self._state_block: SharedBlock | None = None
+        """Shared memory from which the other process reads that state."""
 
     def begin(self, scene: Scene) -> None:
-        """Render a scene to its end; no other one may be under way. What it shares with the scene before stays."""
+        """Render a scene to its end; no other one may be under way. Members of the scene before stay on the device."""
         with self.process.changed:
             self._stopping = False
             self._kept = None
@@ -208,30 +208,30 @@ class RenderSession(Session):
             self.show(scene, self._generation, False)
 
     def rest(self) -> None:
-        """The scene is rendered: a process that is started anew need not begin again with it."""
+        """Forget the scene, which is rendered: a new process does not render it again."""
         with self.process.changed:
             self._snapshot = self._kept = None
             self._due = False
 
     def expect_snapshots(self, seconds: tuple[float, ...]) -> None:
-        """Ask for the picture at ascending times; to be said before a scene begins."""
+        """Request the picture of the next scene at ascending times."""
         with self.process.changed:
             self._snapshots = seconds
             self.process.post("expect_snapshots", session=self.number, seconds=seconds)
 
-    def keep_still(self, checkpoint: Path | None) -> None:
-        """Have the scene go on from a checkpoint and be kept in it; to be said before a scene begins."""
+    def set_checkpoint(self, checkpoint: Path | None) -> None:
+        """Continue the next scene from a checkpoint and keep its render there; None is none."""
         with self.process.changed:
             self._checkpoint = str(checkpoint or "")
-            self.process.post("keep_still", session=self.number, path=self._checkpoint)
+            self.process.post("set_checkpoint", session=self.number, path=self._checkpoint)
 
-    def want_picture(self) -> None:
-        """Ask for the picture so far."""
+    def request_picture(self) -> None:
+        """Request the picture so far."""
         with self.process.changed:
-            self.process.post("want_picture", session=self.number)
+            self.process.post("request_picture", session=self.number)
 
     def stop(self) -> None:
-        """Have the render end with what it has."""
+        """End the render with the picture that it has."""
         with self.process.changed:
             if not self._stopping:
                 self._stopping = True
@@ -242,37 +242,37 @@ class RenderSession(Session):
         super().introduce()
         self.introduced = True
         self.process.post("expect_snapshots", session=self.number, seconds=self._snapshots)
-        self.process.post("keep_still", session=self.number, path=self._checkpoint)
-        self._hand_on()
+        self.process.post("set_checkpoint", session=self.number, path=self._checkpoint)
+        self._hand_over()
         if self._stopping:
             self.process.post("stop", session=self.number, generation=self._generation)
         self.events.put(("started", {}))
 
-    def _hand_on(self) -> None:
-        """Have a new process go on with what the one before has kept."""
+    def _hand_over(self) -> None:
+        """Have a new process continue the render."""
         if self._kept is None:
             return
         try:
-            content, self._given = self._kept.message(self.process.error)
+            content, self._state_block = self._kept.message(self.process.error)
         except OSError:  # there is no memory: it begins again
             return
-        self.process.post("go_on", session=self.number, **content)
+        self.process.post("resume", session=self.number, **content)
 
     def snapshot_taken(self, number: int) -> None:
-        """As Session has it; what was handed on before is read as well."""
+        """As Session has it; the state that was handed over is read as well."""
         super().snapshot_taken(number)
-        self._take_back()
+        self._free_state()
 
     def release(self) -> None:
         """As Session has it."""
         super().release()
         self._kept = None
-        self._take_back()
+        self._free_state()
 
-    def _take_back(self) -> None:
-        if self._given is not None:
-            self._given.close()
-            self._given = None
+    def _free_state(self) -> None:
+        if self._state_block is not None:
+            self._state_block.close()
+            self._state_block = None
 
     def fail(self, text: str) -> None:
         """As Session has it."""
@@ -304,10 +304,10 @@ class RenderSession(Session):
 
 
 class PreparationSession(Session):
-    """Programs that are compiled before anybody waits for them. It closes by itself."""
+    """Compilation of programs before a render needs them. The session closes by itself."""
 
     def fail(self, text: str) -> None:
-        """As Session has it: whoever renders says what is wrong."""
+        """Ignore the error: the render that follows reports it."""
 
     def receive(self, kind: str, content: dict) -> None:
         """As Session has it."""

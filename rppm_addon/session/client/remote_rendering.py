@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Renders in the renderer's process, for a caller that waits for them."""
+"""Renders in the renderer's process for callers that wait for them."""
 
 import queue
 import threading
@@ -12,17 +12,17 @@ from ...scene import errors
 from ...scene.scene import Scene
 from ..render.render_job import POLL_SECONDS, RenderJob
 from ..render.results import Frame, RenderResult, empty_result
+from ..transport.protocol import ProtocolError
+from ..transport.sessions import SessionKind
 from .client import ProcessState, RendererProcess
 from .client_session import RenderSession
-from .protocol import ProtocolError
-from .sessions import SessionKind
 
 STOP_SECONDS, KEEP_SECONDS = 10.0, 120.0
-"""How long the process may take to stop, and to keep the render as well; then it ends without a picture."""
+"""Seconds that the process may take to stop, and to write a checkpoint as well; then it ends without a picture."""
 
 
 class RemoteRenderer:
-    """Renders scene after scene in one session: what they share is sent and uploaded once."""
+    """Renders scene after scene in one session: members that they have in common are sent and uploaded once."""
 
     def __init__(self, process: RendererProcess, kind: SessionKind) -> None:
         self.process = process
@@ -33,8 +33,8 @@ class RemoteRenderer:
     def render(self, scene: Scene, job: RenderJob) -> RenderResult:
         """Render a scene; returns and raises what Renderer.render does, and RendererError when the process fails.
 
-        Callbacks run in the caller's thread, while the process goes on. A process that dies is started anew and begins
-        again with the scene.
+        Callbacks run in the caller's thread while the process renders. A process that dies is started anew and
+        continues the scene.
         """
         with self._lock:
             session, self._idle = self._idle, None
@@ -62,7 +62,7 @@ class RemoteRenderer:
         return result
 
     def forget(self) -> None:
-        """Have the process give back what it keeps of the last scene. A render under way goes on."""
+        """Have the process free the last scene. A render that is under way continues."""
         with self._lock:
             session, self._idle = self._idle, None
         if session is not None:
@@ -70,7 +70,7 @@ class RemoteRenderer:
 
 
 def render(process: RendererProcess, scene: Scene, job: RenderJob, kind: SessionKind) -> RenderResult:
-    """Render one scene as RemoteRenderer.render does, of which nothing is kept."""
+    """Render one scene as RemoteRenderer.render does, and free it."""
     renderer = RemoteRenderer(process, kind)
     try:
         return renderer.render(scene, job)
@@ -82,7 +82,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
     def begin() -> None:
         job.on_start()
         session.expect_snapshots(tuple(job.snapshots))
-        session.keep_still(job.checkpoint)
+        session.set_checkpoint(job.checkpoint)
         session.begin(scene)
 
     shown = session.introduced
@@ -105,7 +105,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             begin()
         elif event == "progress":
             if job.on_progress(content["progress"]):
-                session.want_picture()
+                session.request_picture()
         elif event == "picture":
             job.on_frame(content["progress"], _frame(content, scene))
         elif event == "snapshot":
@@ -117,8 +117,7 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
 
 
 def _frame(content: Mapping, scene: Scene) -> Frame:
-    """The frame of a scene that came with a message. Raises ProtocolError when arrays, names and the scene do not fit
-    each other."""
+    """Return the frame that a message brings. Raises ProtocolError unless arrays, names and the scene fit."""
     width, height = scene.camera.resolution
     try:
         combined, *passes = content["arrays"]
