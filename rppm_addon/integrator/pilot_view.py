@@ -15,7 +15,7 @@ from .common.records.rays import HIT, NO_TRIANGLE, RAY
 from .density_estimation.radii import Radii, radius_in_pixels
 from .device_scene.stage_context import StageContext
 from .lights.portals import passes_portal
-from .stages.final_gather import GATHERING_VERTEX
+from .stages.final_gather import FINAL_GATHER_ORIGIN, NO_FINAL_GATHER
 from .stages.stage_set import StageSet
 
 MOST_PIXELS = 1 << 14
@@ -110,7 +110,7 @@ def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int
     and whether they do so and pass no portal."""
     importons = stages.importons
     rays = importons.rays.read(RAY.dtype, pixels).copy()
-    gathers = stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, pixels)["shared_radius"] >= 0.0
+    gathers = stages.final_gather.origins.read(FINAL_GATHER_ORIGIN.dtype, pixels)["reuse_radius"] != NO_FINAL_GATHER
     followed = np.flatnonzero(gathers & (rays["maximum_distance"] > 0.0))[::stride]
     distances = np.zeros(pixels, np.float32)
     distances[followed] = rays["maximum_distance"][followed]

@@ -27,9 +27,9 @@ void main() {
     if (query.part != PART_NONE) {
         vec3 arrival = photons[photon_first + active_place()].direction;
         float ior = query.part == PART_SHARP_TRANSMITTING ? 1.0 / query.ior : 1.0;
-        vec3 share = part_share(index, closures[index], query.part, ior, viewer, arrival);
+        vec3 share = part_bsdf(index, closures[index], query.part, ior, viewer, arrival);
         // What is too little to be compared stays as it is.
-        flux *= mix(vec3(1.0), share / max(query.share, 1e-20), greaterThan(query.share, vec3(1e-20)));
+        flux *= mix(vec3(1.0), share / max(query.bsdf, 1e-20), greaterThan(query.bsdf, vec3(1e-20)));
         photon_paths[index].flux = flux;
         photon_paths[index].flags = query.flags;
     }

@@ -23,16 +23,16 @@ uint lobe_part(MicrofacetLobe lobe, bool transmitted) {
 }
 
 // Of sharp microfacets, whose normal is that which links both directions.
-vec3 sharp_share(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light) {
+vec3 sharp_bsdf(MicrofacetLobe lobe, bool transmitted, vec3 viewer, vec3 light) {
     vec3 h = transmitted ? lobe.ior * light + viewer : light + viewer;
     float size = length(h), cosine = size > 1e-4 ? abs(dot(viewer, h)) / size : 1.0;
-    FacetShares shares = facet_shares(lobe, cosine);
-    return transmitted ? shares.transmittance : lobe.weight * shares.reflectance;
+    FacetFresnel fresnel = facet_fresnel(lobe, cosine);
+    return transmitted ? fresnel.transmittance : lobe.weight * fresnel.reflectance;
 }
 
 // Sum of all lobes that may send light this way, as is their probability. ior: of a sharp refraction.
 // Seen from the other side, the BSDF of a refraction is that over the squared index: its root is left to each side.
-vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
+vec3 lobes_bsdf(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     bool transmitted = part == PART_TRANSMITTING || part == PART_SHARP_TRANSMITTING;
     vec3 share = vec3(0.0);
     for (int k = 0; k < closure_lobes(closure); ++k) {
@@ -50,20 +50,20 @@ vec3 lobes_share(uint path, Closure closure, uint part, float ior, vec3 viewer, 
             share += evaluate_lobe(lobe, lobe_normal(lobe), viewer, light)
                      * (lobe_shadowing(lobe, closure.shading_normal, light) * (transmitted ? 1.0 / lobe.ior : 1.0));
         else if (!transmitted || abs(lobe.ior - ior) <= 1e-3 * ior)
-            share += sharp_share(lobe, transmitted, viewer, light);
+            share += sharp_bsdf(lobe, transmitted, viewer, light);
     }
     return share;
 }
 
 // Of the diffuse or translucent part, seen from its own side of the surface: normal faces the viewer's.
-vec3 diffuse_share(Closure closure, uint part, vec3 normal, vec3 viewer, vec3 light) {
+vec3 diffuse_bsdf(Closure closure, uint part, vec3 normal, vec3 viewer, vec3 light) {
     return (part == PART_DIFFUSE ? closure.diffuse : closure.translucent)
            * diffuse_factor(closure, normal, viewer, light, part == PART_DIFFUSE);
 }
 
 // As seen from the side of the viewer, for whom the closure is.
-vec3 part_share(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
+vec3 part_bsdf(uint path, Closure closure, uint part, float ior, vec3 viewer, vec3 light) {
     if (part == PART_TRANSPARENT) return closure.transparent;
-    if (part >= PART_REFLECTING) return lobes_share(path, closure, part, ior, viewer, light);
-    return diffuse_share(closure, part, unpack_unit_vector(closure.diffuse_normal), viewer, light);
+    if (part >= PART_REFLECTING) return lobes_bsdf(path, closure, part, ior, viewer, light);
+    return diffuse_bsdf(closure, part, unpack_unit_vector(closure.diffuse_normal), viewer, light);
 }

@@ -69,7 +69,7 @@ Scattering scatter_diffuse(Closure closure, bool reflected, vec3 arrival, vec2 d
     }
     uint part = reflected ? PART_DIFFUSE : PART_TRANSLUCENT;
     vec3 direction = cosine_hemisphere(geometric, disk);
-    return Scattering(direction, counts * diffuse_share(closure, part, normal, direction, arrival), geometric,
+    return Scattering(direction, counts * diffuse_bsdf(closure, part, normal, direction, arrival), geometric,
                       !reflected, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true, part, 1.0);
 }
 
@@ -100,7 +100,7 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool fr
     float norm = max(total, 1.0);
     float u = next_random(random) * norm;
     vec2 disk = sample_disk(next_random2(random));
-    float u_event = next_random(random);
+    float uc = next_random(random);
     Scattering result;
     result.weight = vec3(0.0);
     if (u >= total) return result;
@@ -116,7 +116,7 @@ Scattering scatter(uint index, Closure closure, vec3 flux, vec3 arrival, bool fr
         float probability = shares[chosen];
         MicrofacetLobe lobe = stored_lobe(index, chosen);
         vec3 geometric = unpack_unit_vector(closure.geometric_normal);
-        LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, u_event, false);
+        LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), arrival, disk, uc, false);
         float shadowing = lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
         if (lobe_is_hair(lobe.kind)) sampled = of_fiber(sampled, lobe, geometric, arrival, from_light);
         result = Scattering(sampled.direction, sampled.weight * (shadowing * norm / max(probability, 1e-20)),
@@ -171,9 +171,9 @@ void store_adjoint_query(uint index, Closure closure, Scattering scattering, vec
         query.part = scattering.part;
         vec3 normal = unpack_unit_vector(closure.diffuse_normal);
         if (scattering.part == PART_DIFFUSE || scattering.part == PART_TRANSLUCENT)
-            query.share = diffuse_share(closure, scattering.part, scattering.transmitted ? -normal : normal,
-                                        scattering.direction, arrival);
-        else query.share = part_share(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
+            query.bsdf = diffuse_bsdf(closure, scattering.part, scattering.transmitted ? -normal : normal,
+                                      scattering.direction, arrival);
+        else query.bsdf = part_bsdf(index, closure, scattering.part, scattering.ior, arrival, scattering.direction);
     } else {
         photon_paths[index].flags = path_flags;
         if ((closure.flags & CLOSURE_SUBSURFACE) != 0u) query.part = scattering.part;

@@ -35,13 +35,14 @@ ITERATION_PARAMETERS = Record(
     next_event="uint",
     film_transparent="uint",
     has_round_shapes="uint",
+    orthographic_camera="uint",
     shrinkage="float",
     **RADIUS_PARAMETERS,
 )
 """Members of the uniform block Iteration (shaders/common/iteration.glsl).
 
 ``number``, ``number_in_film``, ``seed`` and ``direct_world_flux`` are those of Iteration. ``photon_flux`` is the mean
-flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
+flux of all photons, W. ``limits_bounces`` says whether any light has bounce limits of its own, ``next_event`` whether
 shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, and what the lights
 and the radii declare.
 """
@@ -82,6 +83,7 @@ class IterationBlock(BufferSet):
             "next_event": settings.direct_light is DirectLight.RAYS,
             "film_transparent": settings.film_transparent,
             "has_round_shapes": geometry.has_round_shapes,
+            "orthographic_camera": scene.camera.orthographic and scene.camera.panorama is None,
             "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),
         }
         self._write(dict.fromkeys(RADIUS_PARAMETERS, 0.0))

@@ -44,12 +44,13 @@ how far the ray's origin is from the light, INFINITY_DISTANCE from those without
 the surface that turned the photon last. ``known`` is 0 where neighbors are not followed any more."""
 StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
 ADJOINT_QUERY = Record(
-    "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", reach="float", unused="uint"
+    "AdjointQuery", bsdf="vec3", part="uint", ior="float", flags="uint", reach="float", unused="uint"
 )
-"""How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
-closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
-the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on, and its ray ends at
-``reach``, meters. A share of 0 is not compared."""
+"""A scattered photon at a surface whose scattering depends on where it is seen from, until the BSDF is evaluated from
+the side that the photon goes to (shaders/photons/adjoint.comp): the ``part`` of the closure that scattered it
+(shaders/photons/parts.glsl), the value ``bsdf`` of this part from the side that it came from, and the ``ior`` of a
+sharp refraction. ``flags`` are those of its path from here on, and its ray ends at ``reach``, meters. A value of 0 is
+not compared."""
 StorageBlock("AdjointQueries", "AdjointQuery adjoint_queries[];")
 FLUX_GROUP = GROUP_SIZE
 """Paths whose fluxes the device sums (shaders/photons/balance.comp)."""

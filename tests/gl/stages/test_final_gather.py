@@ -11,7 +11,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.density_estimation import radii
 from rppm_addon.integrator.stages import final_gather
 from rppm_addon.integrator.stages.coverage import Coverage
-from rppm_addon.integrator.stages.final_gather import GATHERING_VERTEX
+from rppm_addon.integrator.stages.final_gather import FINAL_GATHER_ORIGIN
 from rppm_addon.integrator.stages.photons import Photons
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 
@@ -21,7 +21,7 @@ PROBE = Coverage.probe
 
 def indirect_pictures(mapper, monkeypatch, radius: float) -> np.ndarray:
     """(SEEDS, SIZE, SIZE) radiance of a diffuse room, shared within so many Eq. 3 radii."""
-    monkeypatch.setattr(final_gather, "SHARED_RADIUS", radius)
+    monkeypatch.setattr(final_gather, "REUSE_RADIUS", radius)
     pictures = []
     for seed in range(SEEDS):
         scene = scenes.room(SIZE, iterations=4, photons=2048, seed=seed, radius_scale=60.0, filter_width=0.0)
@@ -54,10 +54,10 @@ def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
     scene.instances[0].materials = [len(scene.materials) - 1]
     mapper.build(scene)
     mapper.iterate()
-    vertices = mapper.stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, SIZE * SIZE)
-    assert (vertices["shared_radius"] == 0).sum() > 50
-    assert (vertices["shared_radius"] > 0).sum() > 500
-    assert (vertices["weight"][vertices["shared_radius"] >= 0] >= 0).all()
+    origins = mapper.stages.final_gather.origins.read(FINAL_GATHER_ORIGIN.dtype, SIZE * SIZE)
+    assert (origins["reuse_radius"] == 0).sum() > 50
+    assert (origins["reuse_radius"] > 0).sum() > 500
+    assert (origins["weight"][origins["reuse_radius"] >= 0] >= 0).all()
 
 
 def corner(seed: int) -> Scene:
@@ -142,7 +142,7 @@ def test_what_a_wall_sends_its_floor_is_not_blurred(mapper, monkeypatch):
     be off by a tenth."""
     monkeypatch.setattr(radii, "CORNER_RADII", 0.0)  # one bounce, no more
     shared = from_above(mapper)
-    assert mapper.learning.radii(1).in_pixels * final_gather.SHARED_RADIUS > ROWS / 2
+    assert mapper.learning.radii(1).in_pixels * final_gather.REUSE_RADIUS > ROWS / 2
     rows = shared.mean(axis=2)  # along the wall all is alike
     y = HEIGHT * (2.0 - (np.arange(ROWS) + 0.5) * 2.0 / ROWS)  # row 0 lies farthest off
     y = y if rows[:, -1].mean() > rows[:, 0].mean() else y[::-1]
@@ -168,7 +168,7 @@ def test_storage_blocks_give_the_same_picture(mapper, other_mapper, library, mon
     """Software drivers read the same data through image units instead of storage blocks."""
     as_it_is = picture(mapper)
     monkeypatch.setattr(library, "_reads_texels", False)
-    monkeypatch.delitem(library._programs, ("final_gather/share.comp", (), ()))
+    monkeypatch.delitem(library._programs, ("final_gather/reuse.comp", (), ()))
     np.testing.assert_array_equal(picture(other_mapper), as_it_is)
 
 
