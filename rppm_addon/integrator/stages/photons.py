@@ -74,7 +74,7 @@ def _flux_groups(sizes: StageSizes) -> int:
 
 class Photons(Stage):
     """The photons of one iteration: those of a segment follow those of the segments before, one for each path that
-    lives, so that they take as much memory as there are; ``photon_origins`` tells of each path where it began."""
+    lives, so that they take as much memory as there are; ``photon_origins`` has the place where each path began."""
 
     memory_group = "photon paths"
     remedy = "lower the photons per iteration or the photon path length"
@@ -219,8 +219,8 @@ class Photons(Stage):
         """Where the flux of the last iteration went, W summed over the channels.
 
         ``deposited`` is what paths still carried to the vertex where a limit cut them off; ``lost`` is flux on a ray
-        of which no segment tells: it must be zero. ``absorbed`` is the rest, changes of index included.
-        Russian roulette makes single events absorb more or less than their share, the sum being right.
+        that no segment followed: it must be zero. ``absorbed`` is the rest, changes of index included.
+        Russian roulette makes single events absorb more or less than their fraction, the sum being right.
         """
         groups = -(-self.photon_count // FLUX_GROUP)
         self._balance.run(
