@@ -15,7 +15,7 @@ from .density_estimation.radii import (
     Radii,
     expected_photons,
     fitted_wide_radius,
-    most_radius_factor,
+    maximum_radius_factor,
     photons_found,
     photons_found_by_gathering,
     radius_in_pixels,
@@ -71,7 +71,7 @@ class Learning:
         self._gathers = context.gathers
         self._expected = expected_photons(context.gathers)
         self._scale = radius_in_pixels(settings, camera)
-        self._most_factor = most_radius_factor(settings)
+        self._most_factor = maximum_radius_factor(settings)
         self._size = camera.resolution
         self.leaves_importon = footprints > 0
         """(rows, columns) of the pilot view."""

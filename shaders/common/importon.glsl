@@ -105,7 +105,7 @@ struct Estimate {
 bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estimate estimate, out uint stands_for) {
     uint flags = photons[photon_number].flags;
     vec3 offset = photons[photon_number].position - ITS.position;
-    float radius = photon_radius(flags, ITS.least_radius, ITS.radius, wide_radius);
+    float radius = photon_radius(flags, ITS.minimum_radius, ITS.radius, wide_radius);
     float radius2 = radius * radius;
     if (!(ITS.radius > 0.0) || !within_reach(ITS.gathers, offset, radius, flags)) return false;
     float disks = ITS.radius * ITS.radius / radius2;
@@ -133,7 +133,7 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) kernel *= photon_factor(ITS.gathers);
     radiance = radiance * flux * kernel;
     estimate.diffuse = estimate.diffuse * flux * kernel;
-    float mis_weight = 1.0, disk = disk_radius(ITS.least_radius, ITS.radius);
+    float mis_weight = 1.0, disk = disk_radius(ITS.minimum_radius, ITS.radius);
     if ((flags & PHOTON_DIRECT) != 0u) mis_weight = direct_mis_weight(photon_number, disk);
     else if ((ITS.gathers & FINAL_GATHER_ORIGIN) != 0u)
         mis_weight = caustic_mis_weight(photon_number, ITS.history, disk);

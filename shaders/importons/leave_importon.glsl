@@ -41,7 +41,7 @@ void leave_importon(SurfaceVertex vertex, LobeSelection lobes, float u) {
     importons[index].next = 0u;
     importons[index].gathers = gather_flags(vertex);
     importons[index].shading_normal = closure.shading_normal;
-    importons[index].least_radius = vertex.radii.minimum;
+    importons[index].minimum_radius = vertex.radii.minimum;
     importons[index].history = history_word(vertex.history, vertex.history, vertex.path.depth);
     ClosureLobe lobe = sample_importon_lobe(vertex, lobes.stored, u);
     bool stores = unpack_kind(lobe.kind) != LOBE_NONE || !(largest(diffuse + translucent) <= 0.0);

@@ -34,6 +34,6 @@ PhotonRadii photon_radii(uint index, inout CameraPath path, vec3 direction, Clos
         return PhotonRadii(footprint, radius, radius);
     }
     // Caustics of photons that only specular surfaces have scattered are estimated within a radius of the pixel's own.
-    float factor = iteration.number <= 1u ? iteration.most_radius_factor : radius_factors[index];
+    float factor = iteration.number <= 1u ? iteration.maximum_radius_factor : radius_factors[index];
     return PhotonRadii(footprint, footprint, factor * footprint);
 }
