@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light that gathering rays find is shared among pixels without a change of its mean."""
+"""Neighboring pixels reuse the rays of the final gather without a change of the mean."""
 
 import dataclasses
 
 import numpy as np
 import pytest
 import scenes
+from packed_normals import unpack
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.density_estimation import radii
 from rppm_addon.integrator.stages import final_gather
 from rppm_addon.integrator.stages.coverage import Coverage
-from rppm_addon.integrator.stages.final_gather import FINAL_GATHER_ORIGIN
+from rppm_addon.integrator.stages.final_gather import FINAL_GATHER_HIT, FINAL_GATHER_ORIGIN, NO_FINAL_GATHER
 from rppm_addon.integrator.stages.photons import Photons
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
 
@@ -33,7 +34,7 @@ def indirect_pictures(mapper, monkeypatch, radius: float) -> np.ndarray:
     return np.array(pictures)
 
 
-def test_sharing_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
+def test_reuse_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
     """Blocks keep their means within 4 standard errors and 0.5 %: shared light is that of a disk around."""
     alone = indirect_pictures(mapper, monkeypatch, 0.0)
     shared = indirect_pictures(mapper, monkeypatch, 2.0)
@@ -48,7 +49,7 @@ def test_sharing_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
     assert abs(by_block.mean()) < 4 * by_block.mean(axis=(1, 2)).std(ddof=1) / np.sqrt(SEEDS) + 0.005 * level
 
 
-def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
+def test_rays_of_diffuse_surfaces_are_reused_and_those_of_rough_ones_are_not(mapper):
     scene = scenes.room(SIZE, photons=64)
     scene.materials.append(material("rough", Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.8)))
     scene.instances[0].materials = [len(scene.materials) - 1]
@@ -58,6 +59,20 @@ def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
     assert (origins["reuse_radius"] == 0).sum() > 50
     assert (origins["reuse_radius"] > 0).sum() > 500
     assert (origins["weight"][origins["reuse_radius"] >= 0] >= 0).all()
+
+
+def test_rays_of_the_final_gather_lead_from_an_origin_to_the_front_of_a_hit(mapper):
+    mapper.build(scenes.room(SIZE, photons=64))
+    mapper.iterate()
+    gather = mapper.stages.final_gather
+    origins = gather.origins.read(FINAL_GATHER_ORIGIN.dtype, SIZE * SIZE)
+    hits = gather.hits.read(FINAL_GATHER_HIT.dtype, SIZE * SIZE)
+    gathers = origins["reuse_radius"] != NO_FINAL_GATHER
+    assert gathers.sum() > 500
+    rays = hits["position"][gathers].astype(np.float64) - origins["position"][gathers]
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    for normals, side in ((origins["normal"], 1.0), (hits["normal"], -1.0)):
+        assert (side * np.sum(unpack(normals[gathers]) * rays, axis=-1) > -1e-3).mean() > 0.99
 
 
 def corner(seed: int) -> Scene:
