@@ -46,7 +46,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             estimator.splat(targets, context.timers)  # Direct-, IndirectSplatting
             yield
         if iteration.needs_radiance:
-            stages.final_gather.share(context, estimator.sums, importons.radiances, band, radii)
+            stages.final_gather.add(context, estimator.sums, importons.radiances, band, radii)
         if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
             listeners.band_ended(events)
         if iteration.precedes_learning:

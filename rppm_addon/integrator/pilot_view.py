@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene.camera import Camera
-from .camera_paths.final_gather import GATHERING_VERTEX
+from .camera_paths.final_gather import FINAL_GATHER_ORIGIN, NO_FINAL_GATHER
 from .common.band import Band
 from .common.camera_view import camera_view
 from .common.iteration import Iteration
@@ -110,7 +110,7 @@ def _ends_of_gathering_rays(context: StageContext, stages: StageSet, pixels: int
     and whether they do so and pass no portal."""
     importons = stages.importons
     rays = importons.rays.read(RAY.dtype, pixels).copy()
-    gathers = stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, pixels)["shared_radius"] >= 0.0
+    gathers = stages.final_gather.origins.read(FINAL_GATHER_ORIGIN.dtype, pixels)["reuse_radius"] != NO_FINAL_GATHER
     followed = np.flatnonzero(gathers & (rays["maximum_distance"] > 0.0))[::stride]
     distances = np.zeros(pixels, np.float32)
     distances[followed] = rays["maximum_distance"][followed]

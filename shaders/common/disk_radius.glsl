@@ -2,4 +2,4 @@
 
 // The radius in which caustic photons count at an importon where they do not know their footprint, as those of the
 // environment.
-float disk_radius(float least, float most) { return min(3.0 * least, most); }
+float disk_radius(float minimum, float maximum) { return min(3.0 * minimum, maximum); }

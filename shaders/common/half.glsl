@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Half floats by integers alone: nouveau drops programs that call unpackHalf2x16, and tells OpenGL nothing of it.
+// Half floats by integers alone: nouveau drops programs that call unpackHalf2x16, and reports no error to OpenGL.
 
 float half_to_float(uint bits) {
     uint exponent = bitfieldExtract(bits, 10, 5), mantissa = bits & 0x3ffu;

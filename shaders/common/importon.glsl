@@ -56,19 +56,20 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
     return value;
 }
 
-// Of direct light: rays find the rest. All of it where only the photons bring it.
-float direct_share(uint photon_number, float radius) {
+// MIS weight of a photon that brings direct light: rays bring the rest, if they bring any.
+float direct_mis_weight(uint photon_number, float radius) {
     if (!(iteration.direct_world_flux > 0.0)) return 1.0;
     PhotonOrigin world = photon_origins[photon_path_of(photons[photon_number].path)];
     return photon_mis_weight(world.radiance, world.pdf, iteration.direct_world_flux, radius);
 }
 
-// The gathering ray finds the rest, unless its path ends before.
-float caustic_share(uint photon_number, uint importon_history, float radius) {
+// MIS weight of a photon that brings a caustic to the origin of a final gather, whose ray brings the rest unless the
+// path ends before.
+float caustic_mis_weight(uint photon_number, uint importon_history, float radius) {
     float radiance = photon_origins[photon_path_of(photons[photon_number].path)].radiance;
     uint bounces = bounces_of(arrived_depth(importon_history) + photons[photon_number].depth);
-    bool found = radiance > 0.0 && bounces <= iteration.camera_bounces;
-    return found ? world_photon_share(radiance, iteration.photon_flux, radius) : 1.0;
+    bool ray_arrives = radiance > 0.0 && bounces <= iteration.camera_bounces;
+    return ray_arrives ? photon_power_heuristic(radiance, iteration.photon_flux, radius) : 1.0;
 }
 
 // What decides first of a pair, since most are too far apart: whether a photon lies within the radius in which it
@@ -104,7 +105,7 @@ struct Estimate {
 bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estimate estimate, out uint stands_for) {
     uint flags = photons[photon_number].flags;
     vec3 offset = photons[photon_number].position - ITS.position;
-    float radius = photon_radius(flags, ITS.least_radius, ITS.radius, wide_radius);
+    float radius = photon_radius(flags, ITS.minimum_radius, ITS.radius, wide_radius);
     float radius2 = radius * radius;
     if (!(ITS.radius > 0.0) || !within_reach(ITS.gathers, offset, radius, flags)) return false;
     float disks = ITS.radius * ITS.radius / radius2;
@@ -132,10 +133,11 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) kernel *= photon_factor(ITS.gathers);
     radiance = radiance * flux * kernel;
     estimate.diffuse = estimate.diffuse * flux * kernel;
-    float share = 1.0, disk = disk_radius(ITS.least_radius, ITS.radius);
-    if ((flags & PHOTON_DIRECT) != 0u) share = direct_share(photon_number, disk);
-    else if ((ITS.gathers & FINAL_GATHER_ORIGIN) != 0u) share = caustic_share(photon_number, ITS.history, disk);
-    estimate.radiance = radiance * share;
-    estimate.diffuse *= share;
+    float mis_weight = 1.0, disk = disk_radius(ITS.minimum_radius, ITS.radius);
+    if ((flags & PHOTON_DIRECT) != 0u) mis_weight = direct_mis_weight(photon_number, disk);
+    else if ((ITS.gathers & FINAL_GATHER_ORIGIN) != 0u)
+        mis_weight = caustic_mis_weight(photon_number, ITS.history, disk);
+    estimate.radiance = radiance * mis_weight;
+    estimate.diffuse *= mis_weight;
     return largest(estimate.radiance) > 0.0;
 }

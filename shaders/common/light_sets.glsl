@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of objects that lights tell apart (rppm_addon/scene/light_linking.py).
+// Sets of objects that lights distinguish (rppm_addon/scene/light_linking.py).
 
 #include <TriangleCodes>
 

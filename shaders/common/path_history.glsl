@@ -15,7 +15,7 @@ uint arrived_depth(uint word) { return word >> 2u * HISTORY_BITS; }
 
 uint first_scatter(uint history) { return history & HISTORY_FIRST; }
 
-// How a lobe scatters, as Cycles' passes tell it; kind: of the lobe.
+// The Scatter of a lobe's kind, as Cycles' passes distinguish it.
 uint lobe_scatter(uint kind, bool transmitted) {
     if (lobe_is_diffuse(kind)) return SCATTER_DIFFUSE;
     if (lobe_is_hair(kind)) transmitted = kind == LOBE_HAIR_TRANSMISSION;  // light goes all around

@@ -16,9 +16,9 @@ uint footprint_bits(float radius) { return floatBitsToUint(clamp(radius, 1e-30, 
 // The radius in which a photon counts at an importon. Photons that a diffuse surface has scattered are spread evenly
 // and estimated with a wider one. Those straight from a light or by specular surfaces only make the caustics, and know
 // how far from each other they are (photons/differentials.glsl).
-float photon_radius(uint flags, float least, float most, float wide) {
-    float disk = disk_radius(least, most);
+float photon_radius(uint flags, float minimum, float maximum, float wide) {
+    float disk = disk_radius(minimum, maximum);
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) return max(disk, wide);
     float footprint = uintBitsToFloat(flags & ~PHOTON_FLAG_MASK);
-    return footprint > 0.0 ? clamp(footprint, least, most) : disk;
+    return footprint > 0.0 ? clamp(footprint, minimum, maximum) : disk;
 }

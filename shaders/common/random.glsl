@@ -21,7 +21,7 @@ uvec4 pcg4d(uvec4 v) {
 // Below 1 for every argument: 24 bits are all that a float keeps.
 float unit_float(uint bits) { return float(bits >> 8u) * (1.0 / 16777216.0); }
 
-// Four values per counter step; segment tells the bounces of a path apart.
+// Four values per counter step; segment distinguishes the bounces of a path.
 struct RandomSequence {
     uvec4 key;
     uvec4 block;

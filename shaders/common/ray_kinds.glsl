@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/camera_path.glsl"
 
-// The rays that Cycles tells apart. Photons count as rays that a diffuse surface sends out.
+// The kinds of rays that Cycles distinguishes. Photons count as rays that a diffuse surface sends out.
 #include <RayVisibility>
 const uint RAYS_WITH_VISIBILITY = RAY_CAMERA | RAY_DIFFUSE | RAY_GLOSSY | RAY_TRANSMISSION;
 const uint RAY_SINGULAR = 32u;  // with one of these: it has but one direction

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/geometry.glsl"
 
-// Power heuristic (Veach 1997, section 9.2.4): share of the first of two ways to sample a direction.
+// Power heuristic (Veach 1997, section 9.2.4): the MIS weight of the first of two techniques that sample a
+// direction.
 float power_heuristic(float pdf, float other_pdf) {
     float ratio = other_pdf / pdf;
     return pdf > 0.0 ? 1.0 / (1.0 + ratio * ratio) : 0.0;

@@ -24,7 +24,7 @@ vec3 sample_spherical_triangle(vec3 point, vec3 v0, vec3 v1, vec3 v2, float soli
     vec3 to_v0 = v0 - point, to_v1 = v1 - point, to_v2 = v2 - point;
     vec3 lengths = vec3(length(to_v0), length(to_v1), length(to_v2));
     vec3 a = to_v0 / lengths.x, b = to_v1 / lengths.y, c = to_v2 / lengths.z;
-    // On the side from a to c, q cuts the share u.x off the solid angle. Half way from a to q is a + x (c - a).
+    // On the side from a to c, q cuts the fraction u.x off the solid angle. Half way from a to q is a + x (c - a).
     vec3 sum = a + b;
     float sine = sin(0.5 * u.x * solid_angle), cosine = cos(0.5 * u.x * solid_angle);
     float volume = abs(dot(to_v0, cross(v1 - v0, v2 - v0))) / lengths.x / lengths.y / lengths.z;

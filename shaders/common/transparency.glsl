@@ -2,12 +2,15 @@
 // Where paths come straight through surfaces. The includer includes before common/bsdf/closure.glsl.
 #include "common/path_depth.glsl"
 
+// Length of a ray that goes on and meets no surface.
+const float ESCAPING_DISTANCE = 1e-30;
+
 // What is hidden from a path, or catches shadows for it, is not there, and no limit counts it.
 bool counts_as_transparent(Closure closure) {
     return (closure.flags & (CLOSURE_ABSENT | CLOSURE_CATCHES_SHADOWS)) == 0u;
 }
 
-// depth: of the path that came to the surface; most: transparent surfaces that it may pass.
-bool may_pass(Closure closure, uint depth, uint most) {
-    return transparents_of(depth) < most || !counts_as_transparent(closure);
+// Whether a path of this depth may pass the transparent part of a closure, as far as the limit of transparent surfaces.
+bool may_pass(Closure closure, uint depth, uint limit) {
+    return transparents_of(depth) < limit || !counts_as_transparent(closure);
 }

@@ -21,16 +21,14 @@ readonly buffer Materials;
 uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
 readonly buffer Closures;
-#include "common/bsdf/stored_lobes.glsl"
+#include "common/bsdf/lobe_selection.glsl"
 readonly buffer Rays;
 readonly buffer CameraPaths;
 writeonly buffer ShadowRays;
 writeonly buffer LightTriangles;
 writeonly buffer Contributions;
-readonly buffer Camera;
 readonly buffer RadiusFactors;
 #include "camera_paths/importons/radius.glsl"
-#include "camera_paths/importons/round_shapes.glsl"
 writeonly buffer LightSplits;
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
@@ -62,7 +60,7 @@ bool can_be_lit(uint index, Closure closure, bool gathered) {
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
 // choice of the light included. is_shared: whether gathering rays find the light. by_rays: what photons leave to rays,
 // of the parts that store them.
-vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelection shares, bool gathered, vec3 wo,
+vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelection lobes, bool gathered, vec3 wo,
                       vec3 wi, bool front, uint visibility, bool is_shared, float light_pdf, float by_rays,
                       out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
@@ -70,7 +68,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelectio
     if (is_shared) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
-        value *= power_heuristic(light_pdf, part_probability(part, shares) * cosine / PI);
+        value *= power_heuristic(light_pdf, selection_probability(part, lobes) * cosine / PI);
     }
     if ((visibility & (front ? RAY_GLOSSY : RAY_TRANSMISSION)) == 0u) return value;
     for (int k = 0; k < closure_lobes(closure); ++k) {
@@ -82,9 +80,9 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelectio
         bool specular = lobe_is_specular(lobe, iteration.specular_alpha);
         float weight = specular ? 1.0 : by_rays;
         if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > MIN_MIS_ALPHA)))
-            weight *=
-                power_heuristic(light_pdf, part_probability((specular ? shares.specular : shares.stored)[1 + k], shares)
-                                               * scattered.pdf);
+            weight *= power_heuristic(light_pdf,
+                                      selection_probability((specular ? lobes.specular : lobes.stored)[1 + k], lobes)
+                                          * scattered.pdf);
         vec3 part = weight * (abs(cosine) * lobe_shadowing(lobe, closure.shading_normal, wi) * scattered.bsdf);
         value += part;
         uint scatter = lobe_scatter(lobe.kind, !front);
@@ -126,7 +124,7 @@ void add_candidate(inout Candidates candidates, float weight, Arriving arriving)
 
 // Of light objects and emissive triangles, where smooth lobes that reflect little reflect them. A path would go there
 // as seldom.
-Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSelection shares, vec3 wo, uint flags,
+Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSelection lobes, vec3 wo, uint flags,
                             uvec4 choices) {
     float alpha = smoothest_lit(false);
     bool looks = false;
@@ -139,7 +137,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
         Candidates(NOTHING_ARRIVES, 0.0, scrambled_sobol(parameters.light_sample, pcg4d(choices + 2u)).x);
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = stored_lobe(index, k);
-        if (!looks_for_reflected_lights(lobe, shares.specular, shares.total, k, wo, alpha)) continue;
+        if (!looks_for_reflected_lights(lobe, lobes.specular[1 + k], lobes.total, wo, alpha)) continue;
         LobeSample sampled = sample_lobe(lobe, lobe_normal(lobe), wo, disk, 0.0, true);
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
@@ -148,7 +146,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
                                             candidates.u, path_absorption(flags));
         candidates.u = passed.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
-                         * facet_shares(lobe, dot(wo, normalize(wo + sampled.direction))).reflected;
+                         * facet_fresnel(lobe, dot(wo, normalize(wo + sampled.direction))).reflection_probability;
         vec3 radiance = reflected * passed.chosen * passed.weights;
         add_candidate(candidates, largest(radiance),
                       Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE));
@@ -165,10 +163,9 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
 }
 
 // Of photons that bring the environment's direct light.
-float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo, bool gathered) {
-    float least = vertex_radius(path, -wo, closure);
-    float most = caustic_radius_of(index, least, gathered);
-    return disk_radius(gathered ? most : least, most);
+float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo) {
+    PhotonRadii radii = photon_radii(index, path, -wo, closure);
+    return disk_radius(radii.minimum, radii.maximum);
 }
 
 // What they leave to rays along a direction.
@@ -177,12 +174,12 @@ float left_to_rays(vec3 point, vec3 direction, float radius) {
 #ifdef PORTALS
     if (view_portals(point, direction, NO_PORTAL).pdf > 0.0) return 1.0;
 #endif
-    return 1.0 - direct_photon_share(world_radiance(direction), world_shadow_ray_pdf(direction), radius);
+    return 1.0 - direct_photon_mis_weight(world_radiance(direction), world_shadow_ray_pdf(direction), radius);
 }
 
 // Of a light that is chosen by what it may give at the point.
 Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure closure, vec3 throughput,
-                             LobeSelection shares, vec3 wo, bool gathered, bool gathers, uvec4 choices,
+                             LobeSelection lobes, vec3 wo, bool gathered, bool gathers, uvec4 choices,
                              out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
@@ -208,7 +205,7 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     bool is_shared = gathers && leaves && light_pdf > 0.0
                      && (environment || (!gathered && is_plain && is_shared_light(light, bounces_of(path.depth))));
     float by_rays = environment ? left_to_rays(closure.position, sampled.direction, radius) : 1.0;
-    vec3 scattered = evaluate_closure(index, closure, throughput, shares, gathered, wo, sampled.direction, side > 0.0,
+    vec3 scattered = evaluate_closure(index, closure, throughput, lobes, gathered, wo, sampled.direction, side > 0.0,
                                       light.flags, is_shared, light_pdf, by_rays, parts);
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
     uint beyond = path.flags;
@@ -243,9 +240,7 @@ void main() {
     uint flags = path.flags, bounces = bounces_of(path.depth);
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > iteration.camera_bounces) return;
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
-    bool gathered = (flags & PATH_GATHERED) != 0u,
-         gathers = iteration.final_gather != 0u && bounces < iteration.camera_bounces
-                   && path_gathers(flags, length_to_gather_by(closure), iteration.gathers_again_below);
+    bool gathered = is_final_gather(path), gathers = can_gather(path, closure);
     vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
     uvec4 choices =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_DIRECT_LIGHT << 24u));
@@ -253,13 +248,13 @@ void main() {
     fiber_seed = choices.w + 2654435769u * parameters.light_sample;
 #endif
     vec3 viewer = -ray.direction;
-    LobeSelection shares = path_shares(index, closure, throughput, viewer, iteration.specular_alpha, gathers,
-                                       (flags & PATH_CAMERA_TRANSPARENT) != 0u);
+    LobeSelection lobes =
+        select_lobes(index, closure, throughput, viewer, gathers, (flags & PATH_CAMERA_TRANSPARENT) != 0u);
     Parts parts;  // shares of it
-    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer, gathered), closure,
-                                            throughput, shares, viewer, gathered, gathers, choices, parts);
+    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer), closure,
+                                            throughput, lobes, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
-    if (!gathered) reflected = arriving_reflected(index, closure, throughput, shares, viewer, flags, choices);
+    if (!gathered) reflected = arriving_reflected(index, closure, throughput, lobes, viewer, flags, choices);
     // One ray for both: by what they would add.
     bool takes_reflected = false;
     float weight = largest(arriving.radiance), reflected_weight = largest(reflected.radiance);

@@ -29,7 +29,7 @@ vec3 hair_color(MicrofacetLobe lobe, float cosine) {
 void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) {
     float cosine = lobe_cosine(lobe, viewer), roughness = sqrt(lobe.alpha);
     uint kind = lobe.kind;
-    vec3 reflectance = facet_shares(lobe, cosine).reflectance;
+    vec3 reflectance = facet_fresnel(lobe, cosine).reflectance;
 #ifdef HAIR_LOBES
     if (kind == LOBE_HAIR_TRANSMISSION) colors.transmission += lobe.weight;
     else if (lobe_is_hair(kind)) colors.glossy += hair_color(lobe, cosine);

@@ -156,8 +156,8 @@ void main() {
     }
     CameraPath path = camera_paths[index];
     bool straight = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u, looks = looks_for_surface(path.flags);
-    bool denoised =
-        (parameters.passes & DENOISING_DATA) == 0u || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_GATHERED)) != 0u;
+    bool denoised = (parameters.passes & DENOISING_DATA) == 0u
+                    || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_FINAL_GATHER)) != 0u;
     bool colored = straight && (parameters.passes & COLORS) != 0u;
     if (!keeps_paths && !looks && denoised && !colored) return;
     Closure closure = closures[index];

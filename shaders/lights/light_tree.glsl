@@ -241,8 +241,8 @@ void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, Sc
         pdf *= light_probability(from.lit, from.environment_irradiance, kind, leaf);
     radiance *= exp(-absorption * way) * scatter_mis_weight(from.pdf, pdf);
     passed.radiance += radiance;
-#ifdef TELL_OF_PASSED_LIGHT
-    TELL_OF_PASSED_LIGHT(number, radiance);
+#ifdef REPORT_PASSED_LIGHT
+    REPORT_PASSED_LIGHT(number, radiance);
 #endif
     float weight = largest(radiance);
     if (!(weight > 0.0)) return;

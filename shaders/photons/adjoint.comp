@@ -3,8 +3,8 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
-// Photons carry what a viewer would get who looks back along their way: the adjoint of the BSDF (Veach 1997, section
-// 3.7). The closures are those that such viewers see.
+// Photons are weighted by the BSDF as a viewer sees it who looks back along their rays: the adjoint BSDF (Veach 1997,
+// section 3.7). The closures are those that such viewers see.
 
 layout(local_size_x = 64) in;
 
@@ -27,9 +27,9 @@ void main() {
     if (query.part != PART_NONE) {
         vec3 arrival = photons[photon_first + active_place()].direction;
         float ior = query.part == PART_SHARP_TRANSMITTING ? 1.0 / query.ior : 1.0;
-        vec3 share = part_share(index, closures[index], query.part, ior, viewer, arrival);
-        // What is too little to be compared stays as it is.
-        flux *= mix(vec3(1.0), share / max(query.share, 1e-20), greaterThan(query.share, vec3(1e-20)));
+        vec3 bsdf = part_bsdf(index, closures[index], query.part, ior, viewer, arrival);
+        // Channels with too small a value to be compared stay as they are.
+        flux *= mix(vec3(1.0), bsdf / max(query.bsdf, 1e-20), greaterThan(query.bsdf, vec3(1e-20)));
         photon_paths[index].flux = flux;
         photon_paths[index].flags = query.flags;
     }

@@ -15,15 +15,15 @@ const float BLUR_FRACTION = 0.5;
 // From the ray's origin to the point where it hits a surface with a geometric normal. The light's points are taken to
 // aim at the same first hit.
 PhotonDifferential moved_to_hit(PhotonDifferential at, vec3 direction, float distance, vec3 geometric, bool first) {
-    float way = first ? at.before + distance : distance, cosine = dot(direction, geometric);
-    at.place_u += way * at.turn_u;
-    at.place_v += way * at.turn_v;
+    float traveled = first ? at.before + distance : distance, cosine = dot(direction, geometric);
+    at.place_u += traveled * at.turn_u;
+    at.place_v += traveled * at.turn_v;
     at.place_u -= direction * (dot(at.place_u, geometric) / cosine);
     at.place_v -= direction * (dot(at.place_v, geometric) / cosine);
     if (first) {
-        at.spread += at.blur / max(way, 1e-20);
+        at.spread += at.blur / max(traveled, 1e-20);
         at.blur = 0.0;
-    } else at.blur += way * at.spread;
+    } else at.blur += traveled * at.spread;
     return at;
 }
 

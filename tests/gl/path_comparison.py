@@ -94,7 +94,7 @@ def judge(name: str, pictures: np.ndarray, right: np.ndarray) -> None:
 def gathering(case: Case, monkeypatch: pytest.MonkeyPatch, iterations: int | None) -> Case:
     """The case with final gather, nothing shared; where its last surface gets its light by the gathering ray, in so
     many iterations."""
-    monkeypatch.setattr(final_gather, "SHARED_RADIUS", 0.0)
+    monkeypatch.setattr(final_gather, "REUSE_RADIUS", 0.0)
     settings = case.scene.settings
     changed = settings.with_values(use_final_gather=True, camera_path_length=settings.camera_path_length + 1)
     scene = dataclasses.replace(case.scene, settings=changed)

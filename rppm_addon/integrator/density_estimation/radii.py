@@ -27,7 +27,7 @@ RADIUS_PARAMETERS = {
     "radius_minimum": "float",
     "radius_maximum": "float",
     "final_gather_radius": "float",
-    "most_radius_factor": "float",
+    "maximum_radius_factor": "float",
     "wide_radius": "float",
     "gathers_again_below": "float",
 }
@@ -97,7 +97,7 @@ class Radii:
             "radius_minimum": self.minimum,
             "radius_maximum": self.maximum,
             "final_gather_radius": self.final_gather,
-            "most_radius_factor": self.most_factor,
+            "maximum_radius_factor": self.most_factor,
             "wide_radius": self.splats.wide,
             "gathers_again_below": self.corner,
         }
@@ -124,7 +124,7 @@ def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
     return settings.radius_scale * math.sqrt(camera.width * camera.height / _REFERENCE_PIXELS)
 
 
-def most_radius_factor(settings: RenderSettings) -> float:
+def maximum_radius_factor(settings: RenderSettings) -> float:
     """Times Eq. 3's radius, what all pixels begin with for caustics (caustic_radii.py)."""
     exact = not settings.use_adaptive_radius or settings.radius_minimum > 0.0 or settings.radius_maximum > 0.0
     return 1.0 if exact else _MOST_FACTOR

@@ -12,7 +12,7 @@ from .radii import (
     Radii,
     expected_photons,
     fitted_wide_radius,
-    most_radius_factor,
+    maximum_radius_factor,
     photons_found,
     photons_found_by_gathering,
     radius_in_pixels,
@@ -55,7 +55,7 @@ class RadiusSchedule:
         self._gathers = gathers
         self._alpha = settings.alpha
         self._scale = radius_in_pixels(settings, camera)
-        self._most_factor = most_radius_factor(settings)
+        self._most_factor = maximum_radius_factor(settings)
         self._expected = expected_photons(self._gathers)
         columns, rows = camera.resolution
         self._photons_of_disks = min(max(_PHOTONS_OF_DISKS * columns * rows, _FEWEST_OF_DISKS), photon_count)

@@ -24,13 +24,13 @@ _FEW_IMPORTONS = 40_000
 _FACES_OF_A_SPLAT = 3
 """A cone of 30 degrees touches at most so many faces of a cube."""
 
-Record("SplatParameters", count="uint", least_radius="float", radius="float", gathers="uint")
+Record("SplatParameters", count="uint", minimum_radius="float", radius="float", gathers="uint")
 Record("QuadParameters", width="uint", height="uint", **SUM_PARAMETERS)
 Record(
     "CubeParameters",
     center="vec3",
     count="uint",
-    least_radius="float",
+    minimum_radius="float",
     radius="float",
     resolution="uint",
     gathers="uint",
@@ -129,7 +129,7 @@ class Splatting(BufferSet):
             {**photons.blocks, **self.blocks, "Camera": raster.camera},
             {
                 "count": photons.count,
-                "least_radius": importons.least_radius(photons),
+                "minimum_radius": importons.minimum_radius(photons),
                 "radius": importons.narrow_radius(photons),
                 "gathers": importons.gathers,
             },
@@ -149,7 +149,7 @@ class Splatting(BufferSet):
         self._reset_jobs()
         cube = {
             "center": importons.center,
-            "least_radius": importons.least_radius(photons),
+            "minimum_radius": importons.minimum_radius(photons),
             "radius": importons.narrow_radius(photons),
             "resolution": self._resolution,
             "gathers": importons.gathers,

@@ -148,6 +148,6 @@ class SplatTargets:
         """Return the upper limit of the narrow radii of these importons, meters."""
         return photons.radii.final_gather if self.final_gather else photons.radii.caustic
 
-    def least_radius(self, photons: StoredPhotons) -> float:
-        """Return the upper limit of the least radii of these importons, meters."""
+    def minimum_radius(self, photons: StoredPhotons) -> float:
+        """Return the upper limit of the minimum radii of these importons, meters."""
         return photons.radii.final_gather if self.final_gather else photons.radii.narrow

@@ -40,6 +40,7 @@ ITERATION_PARAMETERS = Record(
     final_gather="uint",
     next_event="uint",
     has_round_shapes="uint",
+    orthographic_camera="uint",
     shrinkage="float",
     **RADIUS_PARAMETERS,
 )
@@ -83,6 +84,7 @@ class IterationBlock(BufferSet):
             "final_gather": settings.use_final_gather,
             "next_event": settings.direct_light is DirectLight.RAYS,
             "has_round_shapes": geometry.has_round_shapes,
+            "orthographic_camera": scene.camera.orthographic and scene.camera.panorama is None,
             "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),
         }
         self._write(dict.fromkeys(RADIUS_PARAMETERS, 0.0))

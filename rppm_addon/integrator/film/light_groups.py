@@ -106,7 +106,7 @@ class LightGroups(Listener):
                 if context.gathers:
                     found = {**light, "GatherRadiances": self._found.buffer}
                     self._programs["found"].run(band.pixel_count, found, parameters)
-                    final_gather.share_found(context, self._found.buffer, self._taken.buffer, band, events.radii)
+                    final_gather.reuse(context, self._found.buffer, self._taken.buffer, band, events.radii)
                 self._programs["accumulate"].run(
                     band.pixel_count,
                     {**light, "Radiances": self._taken.buffer},

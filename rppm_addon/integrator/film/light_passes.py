@@ -95,7 +95,7 @@ class LightPasses(Listener):
             )
 
     def band_ended(self, events: BandEvents) -> None:
-        """Listener.band_ended: add what FinalGather.share has added, and what photons have."""
+        """Listener.band_ended: add what FinalGather.add has added, and what photons have."""
         if not self._kept:
             return
         context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
@@ -108,7 +108,7 @@ class LightPasses(Listener):
             self._programs["found"].run(band.pixel_count, blocks, parameters)
             for part, found in self._parts(final_gather).items():
                 self._taken.clear()
-                final_gather.share_found(context, found, self._taken.buffer, band, events.radii)
+                final_gather.reuse(context, found, self._taken.buffer, band, events.radii)
                 self._programs["gathered"].run(
                     band.pixel_count, {**blocks, "Radiances": self._taken.buffer}, parameters | {"part": int(part)}
                 )

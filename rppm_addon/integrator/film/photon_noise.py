@@ -89,7 +89,7 @@ class PhotonNoise(Listener):
                 {**parameters, "count": band.pixel_count},
             )
             if context.gathers:
-                gather.share_found(context, gather.radiances.buffer, importons.radiances.buffer, band, events.radii)
+                gather.reuse(context, gather.radiances.buffer, importons.radiances.buffer, band, events.radii)
             self._join.run(
                 rows * columns,
                 {**importons.blocks, **self.blocks},

@@ -44,12 +44,13 @@ how far the ray's origin is from the light, INFINITY_DISTANCE from those without
 the surface that turned the photon last. ``known`` is 0 where neighbors are not followed any more."""
 StorageBlock("PhotonDifferentials", "PhotonDifferential photon_differentials[];")
 ADJOINT_QUERY = Record(
-    "AdjointQuery", share="vec3", part="uint", ior="float", flags="uint", reach="float", unused="uint"
+    "AdjointQuery", bsdf="vec3", part="uint", ior="float", flags="uint", reach="float", unused="uint"
 )
-"""How a photon goes on from a surface whose scattering depends on where it is seen from: by which ``part`` of the
-closure (shaders/photons/parts.glsl), the ``share`` that this scatters as seen from where the photon came from, and
-the ``ior`` of a sharp refraction. ``flags`` are those of its path from here on, and its ray ends at
-``reach``, meters. A share of 0 is not compared."""
+"""A scattered photon at a surface whose scattering depends on where it is seen from, until the BSDF is evaluated from
+the side that the photon goes to (shaders/photons/adjoint.comp): the ``part`` of the closure that scattered it
+(shaders/photons/parts.glsl), the value ``bsdf`` of this part from the side that it came from, and the ``ior`` of a
+sharp refraction. ``flags`` are those of its path from here on, and its ray ends at ``reach``, meters. A value of 0 is
+not compared."""
 StorageBlock("AdjointQueries", "AdjointQuery adjoint_queries[];")
 FLUX_GROUP = GROUP_SIZE
 """Paths whose fluxes the device sums (shaders/photons/balance.comp)."""
@@ -73,7 +74,7 @@ def _flux_groups(sizes: StageSizes) -> int:
 
 class Photons(Stage):
     """The photons of one iteration: those of a segment follow those of the segments before, one for each path that
-    lives, so that they take as much memory as there are; ``photon_origins`` tells of each path where it began."""
+    lives, so that they take as much memory as there are; ``photon_origins`` has the place where each path began."""
 
     memory_group = "photon paths"
     remedy = "lower the photons per iteration or the photon path length"
@@ -218,8 +219,8 @@ class Photons(Stage):
         """Where the flux of the last iteration went, W summed over the channels.
 
         ``deposited`` is what paths still carried to the vertex where a limit cut them off; ``lost`` is flux on a ray
-        of which no segment tells: it must be zero. ``absorbed`` is the rest, changes of index included.
-        Russian roulette makes single events absorb more or less than their share, the sum being right.
+        that no segment followed: it must be zero. ``absorbed`` is the rest, changes of index included.
+        Russian roulette makes single events absorb more or less than their fraction, the sum being right.
         """
         groups = -(-self.photon_count // FLUX_GROUP)
         self._balance.run(

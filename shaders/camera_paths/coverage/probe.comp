@@ -39,8 +39,8 @@ shared uint pending[64];
 shared uint pending_count;
 
 Disk disk_of(uint index) {
-    float least = importons[index].least_radius, most = importons[index].radius;
-    float radius = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, least, most, iteration.wide_radius);
+    float minimum = importons[index].minimum_radius, maximum = importons[index].radius;
+    float radius = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, minimum, maximum, iteration.wide_radius);
     return Disk(importons[index].position, unpack_unit_vector(importons[index].geometric_normal), radius,
                 closures[index].triangle);
 }

@@ -5,7 +5,7 @@
 // Below that alpha it is a mirror.
 const float SMOOTHEST_PHONG = 1e-6;
 
-// The sum of both exponents by the shares of a microfacet's tilt along the axes.
+// The sum of both exponents by the fractions of a microfacet's tilt along the axes.
 float phong_exponent(vec2 exponents, vec2 along) { return dot(exponents, along * along); }
 
 vec2 phong_exponents(vec2 alpha) {

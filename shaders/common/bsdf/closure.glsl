@@ -28,7 +28,7 @@ ClosureLobe packed_lobe(MicrofacetLobe lobe) {
                        lobe.anisotropy);
 }
 
-// Share of the background that the surface cuts out of the picture.
+// Fraction of the background that the surface cuts out of the picture.
 float closure_holdout(Closure closure) { return unpackUnorm2x16(closure.flags).y; }
 
 float lobe_cosine(MicrofacetLobe lobe, vec3 wo) { return clamp(dot(lobe_normal(lobe), wo), 0.0, 1.0); }
@@ -89,30 +89,3 @@ float terminator_factor(uint closure_flags, vec3 normal, vec3 wi) {
     float offset = float(steps) / float(TERMINATOR_STEPS);
     return max(cos(acos(min(cosine, 1.0)) / (1.0 - 0.5 * offset)), 0.0) / max(cosine, 1e-6);
 }
-
-float sum(vec4 shares) { return shares.x + shares.y + shares.z + shares.w; }
-
-// How a camera path may go on: shares of the transparent part and of the three lobes, where they are specular; and of
-// the diffuse and translucent parts together and of the lobes that store photons, by which a path that gathers goes on
-// once. total: of those by which it may go on; survival: the probability that it does.
-struct LobeSelection {
-    vec4 specular;
-    vec4 stored;
-    float total;
-    float survival;
-};
-
-// Roulette sets in once the path's throughput has fallen, and not where the camera sees the surface: of what is dark
-// there, half of all paths would end. total: of all shares by which the path may go on.
-float path_survival(float total, bool is_seen) { return is_seen ? 1.0 : min(1.0, 4.0 * total); }
-
-// Whether a smooth lobe reflects so seldom that a shadow ray looks for light objects where its reflection leads, since
-// paths that go there would find them seldom and then very bright. alpha: up to which lobes are smooth.
-bool looks_for_reflected_lights(MicrofacetLobe lobe, vec4 shares, float total, int k, vec3 viewer, float alpha) {
-    if (!lobe_is_specular(lobe, alpha) || !lobe_has_facets(lobe.kind) || !(shares[1 + k] > 0.0)) return false;
-    float reflected = facet_shares(lobe, lobe_cosine(lobe, viewer)).reflected;
-    return reflected > 0.0 && shares[1 + k] * reflected < 0.5 * total;
-}
-
-// Probability of going on by a part of the closure with this share, survival included.
-float part_probability(float share, LobeSelection shares) { return share * shares.survival / max(shares.total, 1e-20); }

@@ -110,12 +110,12 @@ float photon_scale(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
 }
 
 // A direction; weight: BSDF times cosine over its pdf. radiance: not of photons.
-vec3 sample_hair(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance, out vec3 weight) {
+vec3 sample_hair(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float uc, bool radiance, out vec3 weight) {
     vec2 u = disk_to_square(disk);
     vec3 direction;
-    if (lobe.kind == LOBE_HAIR_HUANG) direction = sample_huang(lobe, n, wo, u, u_event, weight);
+    if (lobe.kind == LOBE_HAIR_HUANG) direction = sample_huang(lobe, n, wo, u, uc, weight);
     else if (lobe.kind == LOBE_HAIR_CHIANG) {
-        direction = sample_chiang(lobe, n, wo, u, u_event);
+        direction = sample_chiang(lobe, n, wo, u, uc);
         HairValue value = chiang_value(lobe, n, wo, direction);
         weight = lobe.weight * value.scattered / max(value.pdf, 1e-20);
     } else {

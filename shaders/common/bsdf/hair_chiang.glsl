@@ -54,11 +54,12 @@ float hair_scale(float roughness) {
            * (0.265 * roughness + 1.194 * roughness * roughness + 5.372 * power20(roughness) * roughness * roughness);
 }
 
-// What follows of the viewer: attenuations of R, TT, TRT and the rest, by which shares they are sampled, and angles.
+// Values that follow from the viewer: the attenuations of R, TT, TRT and the rest, the probabilities with which they
+// are sampled, and angles.
 struct Chiang {
     HairFrame frame;
     vec3 attenuations[4];
-    vec4 shares;
+    vec4 probabilities;
     float sine_o;
     float gamma_o;
     float gamma_t;
@@ -87,8 +88,9 @@ Chiang chiang(MicrofacetLobe lobe, vec3 n, vec3 wo) {
     hair.attenuations[1] = part;
     hair.attenuations[2] = part * passed * reflected;
     hair.attenuations[3] = hair.attenuations[2] * passed * reflected / max(1.0 - passed * reflected, 1e-6);
-    for (int p = 0; p < 4; ++p) hair.shares[p] = luminance(hair.attenuations[p]);
-    hair.shares /= max(hair.shares.x + hair.shares.y + hair.shares.z + hair.shares.w, 1e-20);
+    for (int p = 0; p < 4; ++p) hair.probabilities[p] = luminance(hair.attenuations[p]);
+    hair.probabilities /=
+        max(hair.probabilities.x + hair.probabilities.y + hair.probabilities.z + hair.probabilities.w, 1e-20);
     return hair;
 }
 
@@ -123,7 +125,7 @@ float longitudinal_pdf(vec2 i, vec2 o, float variance) {
     return exp(-sines) * bessel_i0(cosines) / (sinh(inverse) * 2.0 * variance);
 }
 
-// Share of the logistic distribution below -pi.
+// Fraction of the logistic distribution below -pi.
 float logistic_tail(float scale) { return 1.0 / (1.0 + exp(min(PI / scale, 80.0))); }
 
 // By which angle around the fiber light leaves that is not scattered by roughness.
@@ -148,18 +150,18 @@ HairValue chiang_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
         vec2 viewer = tilted_viewer(p, offset, hair.sine_o);
         float pdf = longitudinal_pdf(theta, viewer, lobe_variance(hair, p)) * azimuthal_pdf(p, hair, phi);
         value.scattered += hair.attenuations[p] * pdf;
-        value.pdf += hair.shares[p] * pdf;
+        value.pdf += hair.probabilities[p] * pdf;
     }
     return value;
 }
 
-// u_event chooses the lobe, and what is left of it an angle.
-vec3 sample_chiang(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event) {
+// uc chooses the lobe, and what is left of it an angle.
+vec3 sample_chiang(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float uc) {
     Chiang hair = chiang(lobe, n, wo);
     int p = 0;
-    while (p < 3 && u_event >= hair.shares[p]) u_event -= hair.shares[p++];
+    while (p < 3 && uc >= hair.probabilities[p]) uc -= hair.probabilities[p++];
     float variance = lobe_variance(hair, p);
-    float w = clamp(u_event / max(hair.shares[p], 1e-20), 1e-5, 1.0);
+    float w = clamp(uc / max(hair.probabilities[p], 1e-20), 1e-5, 1.0);
     float along = clamp(1.0 + variance * log(w + (1.0 - w) * exp(-2.0 / variance)), -1.0, 1.0);
     vec2 viewer = tilted_viewer(p, hair_offset(lobe), hair.sine_o);
     float sine = clamp(sqrt(1.0 - along * along) * cos(2.0 * PI * u.y) * viewer.y - along * viewer.x, -1.0, 1.0);

@@ -362,20 +362,20 @@ FiberWays fiber_ways(MicrofacetLobe lobe, Huang hair, vec3 v, float gamma, inout
 }
 
 // A direction, and what is scattered over the pdf.
-vec3 sample_huang(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float u_event, out vec3 weight) {
+vec3 sample_huang(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float uc, out vec3 weight) {
     Huang hair = huang(lobe, n, wo);
-    uint state = fiber_state(wo, vec3(u, u_event));
+    uint state = fiber_state(wo, vec3(u, uc));
     float h = hair.coverage < 1.0 ? hair.h : 2.0 * u.x - 1.0;
     FiberWays ways = fiber_ways(lobe, hair, in_fiber(hair.frame, wo), -asin(h), state);
-    vec4 shares;
-    for (int p = 0; p < 4; ++p) shares[p] = mean_of(ways.carried[p]);
-    float total = shares.x + shares.y + shares.z + shares.w;
+    vec4 weights;
+    for (int p = 0; p < 4; ++p) weights[p] = mean_of(ways.carried[p]);
+    float total = weights.x + weights.y + weights.z + weights.w;
     weight = vec3(0.0);
     if (!(total > 0.0)) return n;
-    u_event *= total;
+    uc *= total;
     int p = 0;
-    while (p < 3 && u_event >= shares[p]) u_event -= shares[p++];
-    weight = ways.carried[p] * (total / max(shares[p], 1e-20));
+    while (p < 3 && uc >= weights[p]) uc -= weights[p++];
+    weight = ways.carried[p] * (total / max(weights[p], 1e-20));
     vec3 local = ways.directions[p];
     return normalize(local.x * hair.frame.side + local.y * hair.frame.tangent + local.z * hair.frame.across);
 }

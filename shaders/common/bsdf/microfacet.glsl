@@ -39,7 +39,7 @@ bool lobe_faces(MicrofacetLobe lobe, float cosine, bool front) {
     return (cosine > 0.0) == front || lobe_is_hair(lobe.kind);
 }
 
-// Of these lobes f0 is a share of the light, as weight is of the others'.
+// Of these lobes f0 is a fraction of the light, as weight is of the others'.
 bool passes_by_f0(uint kind) { return kind == LOBE_GLASS || kind == LOBE_COATED_GLASS; }
 
 // Kind and tint in one word, as closures and importons keep them.
@@ -61,40 +61,40 @@ float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
 
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
 
-// What becomes of light at a microfacet. Drivers without calls have the code of a function as often as it is called:
-// so one has it all, and what of it nobody asks for is left out.
-struct FacetShares {
-    vec3 reflectance;    // per channel, without the lobe's weight
-    vec3 transmittance;  // tint and share of what passes, without total internal reflection
-    float reflected;     // gray: by it glass-like lobes choose between reflection and refraction
+// Reflectance and transmittance of a microfacet. Drivers without calls repeat the code of a function at each call, so
+// that one function computes all of them, and compilers leave out what a caller does not read.
+struct FacetFresnel {
+    vec3 reflectance;              // per channel, without the lobe's weight
+    vec3 transmittance;            // per channel, with the tint, without total internal reflection
+    float reflection_probability;  // gray: lobes like glass choose by it between reflection and refraction
 };
 
-FacetShares facet_shares(MicrofacetLobe lobe, float cosine) {
+FacetFresnel facet_fresnel(MicrofacetLobe lobe, float cosine) {
     float reflectance = fresnel_dielectric(cosine, lobe.ior), f0 = normal_reflectance(lobe.ior);
     float rise = interpolation_of(reflectance, f0);
     bool glass = lobe.kind == LOBE_GLASS, coated_glass = lobe.kind == LOBE_COATED_GLASS,
          passes = lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET;
-    FacetShares shares = FacetShares(vec3(0.0), vec3(0.0), passes ? 0.0 : 1.0);
-    if (lobe.kind == LOBE_METAL) shares.reflectance = f82_reflectance(lobe.f0, lobe.tint, cosine);
-    else if (glass) shares.reflectance = tinted_reflectance(reflectance, f0, lobe.tint);
+    FacetFresnel fresnel = FacetFresnel(vec3(0.0), vec3(0.0), passes ? 0.0 : 1.0);
+    if (lobe.kind == LOBE_METAL) fresnel.reflectance = f82_reflectance(lobe.f0, lobe.tint, cosine);
+    else if (glass) fresnel.reflectance = tinted_reflectance(reflectance, f0, lobe.tint);
     else if (coated_glass || lobe.kind == LOBE_DIELECTRIC)
-        shares.reflectance = mix(coated_glass ? lobe.tint : lobe.f0, vec3(1.0), rise);
-    else if (lobe.kind == LOBE_MIRROR || !lobe_has_facets(lobe.kind)) shares.reflectance = vec3(1.0);
-    if (glass) shares.reflected = reflectance;
-    else if (coated_glass) shares.reflected = mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, rise);
-    if (glass || coated_glass) shares.transmittance = lobe.f0 * (1.0 - shares.reflectance);
-    else if (passes) shares.transmittance = lobe.weight;
-    return shares;
+        fresnel.reflectance = mix(coated_glass ? lobe.tint : lobe.f0, vec3(1.0), rise);
+    else if (lobe.kind == LOBE_MIRROR || !lobe_has_facets(lobe.kind)) fresnel.reflectance = vec3(1.0);
+    if (glass) fresnel.reflection_probability = reflectance;
+    else if (coated_glass) fresnel.reflection_probability = mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, rise);
+    if (glass || coated_glass) fresnel.transmittance = lobe.f0 * (1.0 - fresnel.reflectance);
+    else if (passes) fresnel.transmittance = lobe.weight;
+    return fresnel;
 }
 
 // Estimate of the lobe's albedo toward a direction, for choosing among lobes.
 vec3 lobe_albedo(MicrofacetLobe lobe, float cosine) {
-    FacetShares shares = facet_shares(lobe, cosine);
-    vec3 albedo = lobe.weight * shares.reflectance;
+    FacetFresnel fresnel = facet_fresnel(lobe, cosine);
+    vec3 albedo = lobe.weight * fresnel.reflectance;
 #ifdef HAIR_LOBES
     if (lobe_is_hair(lobe.kind)) return hair_albedo(lobe, cosine);
 #endif
-    return lobe_transmits(lobe.kind) ? albedo + shares.transmittance : albedo;
+    return lobe_transmits(lobe.kind) ? albedo + fresnel.transmittance : albedo;
 }
 
 // A sheet is asked as the mirror that it is for light from the other side. wi: where light comes from.
@@ -113,7 +113,7 @@ struct LobeSample {
 
 // Of microfacets. Values are chosen in place of left early: what a branch leaves behind is kept beside what others
 // compute, and processors have few registers.
-LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
+LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float uc, bool radiance) {
     bool sheet = lobe.kind == LOBE_SHEET, smooth_lobe = lobe.alpha < 1e-6;
     if (sheet) lobe.kind = LOBE_MIRROR;
     MicrofacetFrame frame = microfacet_frame(n, lobe.alpha, lobe.anisotropy);
@@ -121,15 +121,15 @@ LobeSample sample_microfacets(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, f
     vec3 local_h = sample_visible_normal(local_wo, frame.alpha, disk);
     vec3 h = smooth_lobe ? n : from_frame(frame, local_h);
     float cosine = dot(wo, h);
-    FacetShares shares = facet_shares(lobe, cosine);
-    float probability = shares.reflected, k = 1.0 - (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
-    bool reflected = u_event < probability;
+    FacetFresnel fresnel = facet_fresnel(lobe, cosine);
+    float probability = fresnel.reflection_probability, k = 1.0 - (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
+    bool reflected = uc < probability;
     // Where total internal reflection is, a lobe without reflection scatters nothing.
     bool scattered = !(cosine <= 0.0) && (reflected || !(k <= 0.0));
     LobeSample result;
     result.direction = normalize(reflected ? 2.0 * cosine * h - wo : (cosine / lobe.ior - sqrt(k)) * h - wo / lobe.ior);
     result.weight =
-        reflected ? lobe.weight * shares.reflectance / probability : shares.transmittance / (1.0 - probability);
+        reflected ? lobe.weight * fresnel.reflectance / probability : fresnel.transmittance / (1.0 - probability);
     // Both over the squared index of where they are (basic radiance): a refracted beam keeps that of its radiance, and
     // flux, which stays what it is, is over another index (Veach 1997, section 5.2).
     if (!radiance && !reflected) result.weight /= lobe.ior * lobe.ior;
@@ -173,11 +173,11 @@ LobeSample sample_toon_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, boo
 }
 
 // disk: sample_disk of two random numbers, which callers that choose among lobes and diffuse parts have anyway.
-LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_event, bool radiance) {
+LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float uc, bool radiance) {
     LobeSample result;
 #ifdef HAIR_LOBES
     if (lobe_is_hair(lobe.kind)) {
-        result.direction = sample_hair(lobe, n, wo, disk, u_event, radiance, result.weight);
+        result.direction = sample_hair(lobe, n, wo, disk, uc, radiance, result.weight);
         result.transmitted = dot(result.direction, n) < 0.0;
         return result;
     }
@@ -187,7 +187,7 @@ LobeSample sample_lobe(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 disk, float u_
     else
 #endif
         if (lobe_has_facets(lobe.kind))
-        result = sample_microfacets(lobe, n, wo, disk, u_event, radiance);
+        result = sample_microfacets(lobe, n, wo, disk, uc, radiance);
     else if (lobe_is_toon(lobe.kind)) result = sample_toon_lobe(lobe, n, wo, disk, radiance);
     else {
         SheenFrame sheen = sheen_frame(n, wo);
@@ -242,11 +242,11 @@ LobeValue microfacet_value(MicrofacetLobe lobe, vec3 n, vec3 wo, vec3 wi) {
     float ior2 = lobe.ior * lobe.ior;
     float factor = reflected ? distribution * masking / (4.0 * cosine_o * cosine_i)
                              : distribution * masking * ior2 * abs(ih) * oh / (cosine_o * abs(cosine_i) * spread2);
-    FacetShares shares = facet_shares(lobe, oh);
+    FacetFresnel fresnel = facet_fresnel(lobe, oh);
     LobeValue value;
-    value.bsdf = factor * (reflected ? lobe.weight * shares.reflectance : shares.transmittance);
-    value.pdf = reflected ? visible * shares.reflected / (4.0 * oh)
-                          : visible * (1.0 - shares.reflected) * ior2 * abs(ih) / spread2;
+    value.bsdf = factor * (reflected ? lobe.weight * fresnel.reflectance : fresnel.transmittance);
+    value.pdf = reflected ? visible * fresnel.reflection_probability / (4.0 * oh)
+                          : visible * (1.0 - fresnel.reflection_probability) * ior2 * abs(ih) / spread2;
     if (!linked) return LobeValue(vec3(0.0), 0.0);
     return value;
 }

@@ -70,7 +70,7 @@ void main() {
                                                                                           : CORNERS;
     uint caustic_grid = finest_grid(importon.radius);
     float radius = importon.radius;
-    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.least_radius, radius, iteration.wide_radius);
+    float wide = photon_radius(PHOTON_AFTER_ROUGH_BOUNCE, importon.minimum_radius, radius, iteration.wide_radius);
     Cells cells = cells_around(importon.position, radius, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));

@@ -25,7 +25,7 @@ void main() {
     vec3 offset = photons[number].position - camera.position;
     vec3 p = vec3(dot(offset, camera.right), dot(offset, camera.up), dot(offset, camera.forward));
     float radius =
-        photon_radius(photons[number].flags, parameters.least_radius, parameters.radius, iteration.wide_radius);
+        photon_radius(photons[number].flags, parameters.minimum_radius, parameters.radius, iteration.wide_radius);
     if (p.z < -radius) return;
     vec2 across = vec2(p.x - radius, p.x + radius), along = vec2(p.y - radius, p.y + radius);
     if (camera.projection != PROJECTION_ORTHOGRAPHIC) {

@@ -56,7 +56,7 @@ void main() {
     uint number = stored_photons[index];
     if (parameters.gathers != 0u && (photons[number].flags & PHOTON_INDIRECT) != 0u) return;
     vec3 p = photons[number].position - parameters.center;
-    float distance = length(p), radius = photon_radius(photons[number].flags, parameters.least_radius,
+    float distance = length(p), radius = photon_radius(photons[number].flags, parameters.minimum_radius,
                                                        parameters.radius, iteration.wide_radius);
     if (distance < radius * 0.9999) return;
     float cosine = min((distance * distance + 3.0 * radius * radius) / (4.0 * distance * radius), 1.0);

@@ -12,7 +12,7 @@ void meet(uint importon, uint photon) {
     vec3 offset = photons[photon].position - importons[importon].position;
     uint flags = photons[photon].flags;
     float radius =
-        photon_radius(flags, importons[importon].least_radius, importons[importon].radius, iteration.wide_radius);
+        photon_radius(flags, importons[importon].minimum_radius, importons[importon].radius, iteration.wide_radius);
     if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
     Estimate estimate;
     uint stands_for;

@@ -20,8 +20,8 @@ readonly buffer CameraPaths;
 readonly buffer Radiances;
 writeonly buffer SeenLight;
 readonly buffer LightGroupTable;
-readonly buffer GatheringVertices;
-#include "camera_paths/importons/scattered_at.glsl"
+readonly buffer FinalGatherOrigins;
+readonly buffer FinalGatherHits;
 readonly buffer Materials;
 #include "materials/medium.glsl"
 
@@ -30,7 +30,7 @@ vec3 path_throughput;
 void add_passed_light(uint light, vec3 radiance) {
     add_to_group(path_index, light_group_table[light], false, path_throughput * radiance);
 }
-#define TELL_OF_PASSED_LIGHT add_passed_light
+#define REPORT_PASSED_LIGHT add_passed_light
 #include "lights/light_tree.glsl"
 #include "camera_paths/importons/scatter_point.glsl"
 
@@ -40,14 +40,13 @@ void main() {
     Ray ray = rays[path_index];
     vec3 passed = vec3(0.0);
     CameraPath path = camera_paths[path_index];
-    if (ray.maximum_distance > 0.0 && path_sees_lights(path, iteration.next_event)
-        && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
+    if (ray.maximum_distance > 0.0 && path_collects_emission(path) && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
         path_throughput = path.throughput;
-        if ((path.flags & PATH_GATHERED) != 0u) path_throughput *= gathering_vertices[path_index].weight;
+        if (is_final_gather(path)) path_throughput *= final_gather_origins[path_index].weight;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
         passed = path_throughput
-                 * visible_light(scatter_point(path, ray, scattered_at(path_index, path, ray)), ray, distance,
-                                 camera_ray_kind(path.flags), path_absorption(path.flags));
+                 * visible_light(scatter_point(path_index, path, ray), ray, distance, camera_ray_kind(path.flags),
+                                 path_absorption(path.flags));
     }
     seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
 }

@@ -5,12 +5,14 @@
 layout(local_size_x = 64) in;
 
 #include <LightPassParameters>
+#include <FinalGather>
 #include "common/invocation.glsl"
 #include "common/bsdf/microfacet.glsl"
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 uniform Parameters { LightPassParameters parameters; };
-readonly buffer GatheringVertices;
+readonly buffer FinalGatherOrigins;
+readonly buffer FinalGatherHits;
 readonly buffer Importons;
 readonly buffer LightSums;
 #include "film/light_passes/read_light_sum.glsl"
@@ -19,8 +21,8 @@ buffer FoundCaustics;
 
 void main() {
     uint index = invocation_index();
-    if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
-    vec3 world = gathering_vertices[index].found;
+    if (index >= parameters.count || final_gather_origins[index].reuse_radius == NO_FINAL_GATHER) return;
+    vec3 world = final_gather_hits[index].radiance;
     uint history = departing_history(importons[index].history);
     if (parameters.scattered != 0u)
         found_direct[index] = vec4((history & HISTORY_AGAIN) == 0u ? world : vec3(0.0), 0.0);

@@ -5,17 +5,18 @@
 layout(local_size_x = 64) in;
 
 #include <LightPassParameters>
+#include <FinalGather>
 #include <GatherParts>
 #include "common/invocation.glsl"
 uniform Parameters { LightPassParameters parameters; };
 #include "film/light_passes/light_passes.glsl"
-readonly buffer GatheringVertices;
+readonly buffer FinalGatherOrigins;
 readonly buffer Importons;
 readonly buffer Radiances;
 
 void main() {
     uint index = invocation_index();
-    if (index >= parameters.count || gathering_vertices[index].shared_radius < 0.0) return;
+    if (index >= parameters.count || final_gather_origins[index].reuse_radius == NO_FINAL_GATHER) return;
     uint first = first_scatter(departing_history(importons[index].history));
     vec3 light = radiances[index].rgb;
     if (parameters.part == GATHER_PART_CAUSTICS) add_to_pass(PASS_CAUSTICS, index, light);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: PORTALS=1
 // Direct light of the world that comes through a portal is left to shadow rays, which find it there better than photons
-// bring it (direct_photon_share): such photons are marked by a pdf of shadow rays that leaves nothing to photons.
+// bring it (direct_photon_mis_weight): such photons are marked by a pdf of shadow rays that leaves nothing to photons.
 
 layout(local_size_x = 64) in;
 

@@ -82,7 +82,7 @@ def photons_at(positions: np.ndarray, flags: int) -> np.ndarray:
 def importons_at(positions: np.ndarray, radii: np.ndarray, gathers: int = 0) -> np.ndarray:
     importons = IMPORTON.zeros(len(positions))
     importons["position"], importons["radius"], importons["gathers"] = positions, radii, gathers
-    importons["least_radius"] = radii
+    importons["minimum_radius"] = radii
     importons["direction"], importons["diffuse"] = (0, 0, 1), 1.0
     importons["geometric_normal"] = importons["diffuse_normal"] = importons["shading_normal"] = UP
     return importons
@@ -129,7 +129,7 @@ def test_photons_count_within_their_footprints(device):
     radii = np.array([3 * least, least, 0.2, most])
     distances = np.linspace(0.01, 0.6, 60)
     importons = importons_at(np.stack([distances, 0 * distances, 0 * distances], 1), np.full(60, most))
-    importons["least_radius"] = least
+    importons["minimum_radius"] = least
     for footprint, radius in zip(footprints, radii, strict=True):
         bits = int(np.float32(footprint).view(np.uint32)) & ~((1 << PHOTON_FLAG_BITS) - 1)
         photon = photons_at(np.zeros((1, 3), np.float32), bits)

@@ -35,8 +35,8 @@ def brute_force(importons, photons, wide):
         if importon["radius"] <= 0:
             continue
         offset = (stored["position"] - importon["position"]).astype(np.float64)
-        disk = min(DISK_FACTOR * importon["least_radius"], importon["radius"])
-        clear = np.where(footprints > 0, np.clip(footprints, importon["least_radius"], importon["radius"]), disk)
+        disk = min(DISK_FACTOR * importon["minimum_radius"], importon["radius"])
+        clear = np.where(footprints > 0, np.clip(footprints, importon["minimum_radius"], importon["radius"]), disk)
         radius = np.where(diffused, max(disk, wide), clear).astype(np.float64)
         distance2 = (offset**2).sum(1)
         geometric, shading = unpack(importon["geometric_normal"][None])[0], unpack(importon["diffuse_normal"][None])[0]

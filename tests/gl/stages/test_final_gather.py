@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light that gathering rays find is shared among pixels without a change of its mean."""
+"""Neighboring pixels reuse the rays of the final gather without a change of the mean."""
 
 import dataclasses
 
 import numpy as np
 import pytest
 import scenes
+from packed_normals import unpack
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.camera_paths import final_gather
 from rppm_addon.integrator.camera_paths.coverage import Coverage
-from rppm_addon.integrator.camera_paths.final_gather import GATHERING_VERTEX
+from rppm_addon.integrator.camera_paths.final_gather import FINAL_GATHER_HIT, FINAL_GATHER_ORIGIN, NO_FINAL_GATHER
 from rppm_addon.integrator.density_estimation import radii
 from rppm_addon.integrator.photons.photons import Photons
 from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
@@ -21,7 +22,7 @@ PROBE = Coverage.probe
 
 def indirect_pictures(mapper, monkeypatch, radius: float) -> np.ndarray:
     """(SEEDS, SIZE, SIZE) radiance of a diffuse room, shared within so many Eq. 3 radii."""
-    monkeypatch.setattr(final_gather, "SHARED_RADIUS", radius)
+    monkeypatch.setattr(final_gather, "REUSE_RADIUS", radius)
     pictures = []
     for seed in range(SEEDS):
         scene = scenes.room(SIZE, iterations=4, photons=2048, seed=seed, radius_scale=60.0, filter_width=0.0)
@@ -33,7 +34,7 @@ def indirect_pictures(mapper, monkeypatch, radius: float) -> np.ndarray:
     return np.array(pictures)
 
 
-def test_sharing_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
+def test_reuse_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
     """Blocks keep their means within 4 standard errors and 0.5 %: shared light is that of a disk around."""
     alone = indirect_pictures(mapper, monkeypatch, 0.0)
     shared = indirect_pictures(mapper, monkeypatch, 2.0)
@@ -48,16 +49,30 @@ def test_sharing_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
     assert abs(by_block.mean()) < 4 * by_block.mean(axis=(1, 2)).std(ddof=1) / np.sqrt(SEEDS) + 0.005 * level
 
 
-def test_diffuse_surfaces_share_and_rough_ones_do_not(mapper):
+def test_rays_of_diffuse_surfaces_are_reused_and_those_of_rough_ones_are_not(mapper):
     scene = scenes.room(SIZE, photons=64)
     scene.materials.append(material("rough", Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.8)))
     scene.instances[0].materials = [len(scene.materials) - 1]
     mapper.build(scene)
     mapper.iterate()
-    vertices = mapper.stages.final_gather.vertices.read(GATHERING_VERTEX.dtype, SIZE * SIZE)
-    assert (vertices["shared_radius"] == 0).sum() > 50
-    assert (vertices["shared_radius"] > 0).sum() > 500
-    assert (vertices["weight"][vertices["shared_radius"] >= 0] >= 0).all()
+    origins = mapper.stages.final_gather.origins.read(FINAL_GATHER_ORIGIN.dtype, SIZE * SIZE)
+    assert (origins["reuse_radius"] == 0).sum() > 50
+    assert (origins["reuse_radius"] > 0).sum() > 500
+    assert (origins["weight"][origins["reuse_radius"] >= 0] >= 0).all()
+
+
+def test_rays_of_the_final_gather_lead_from_an_origin_to_the_front_of_a_hit(mapper):
+    mapper.build(scenes.room(SIZE, photons=64))
+    mapper.iterate()
+    gather = mapper.stages.final_gather
+    origins = gather.origins.read(FINAL_GATHER_ORIGIN.dtype, SIZE * SIZE)
+    hits = gather.hits.read(FINAL_GATHER_HIT.dtype, SIZE * SIZE)
+    gathers = origins["reuse_radius"] != NO_FINAL_GATHER
+    assert gathers.sum() > 500
+    rays = hits["position"][gathers].astype(np.float64) - origins["position"][gathers]
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    for normals, side in ((origins["normal"], 1.0), (hits["normal"], -1.0)):
+        assert (side * np.sum(unpack(normals[gathers]) * rays, axis=-1) > -1e-3).mean() > 0.99
 
 
 def corner(seed: int) -> Scene:
@@ -142,7 +157,7 @@ def test_what_a_wall_sends_its_floor_is_not_blurred(mapper, monkeypatch):
     be off by a tenth."""
     monkeypatch.setattr(radii, "CORNER_RADII", 0.0)  # one bounce, no more
     shared = from_above(mapper)
-    assert mapper.learning.radius_schedule.radii(1).in_pixels * final_gather.SHARED_RADIUS > ROWS / 2
+    assert mapper.learning.radii(1).in_pixels * final_gather.REUSE_RADIUS > ROWS / 2
     rows = shared.mean(axis=2)  # along the wall all is alike
     y = HEIGHT * (2.0 - (np.arange(ROWS) + 0.5) * 2.0 / ROWS)  # row 0 lies farthest off
     y = y if rows[:, -1].mean() > rows[:, 0].mean() else y[::-1]
@@ -168,7 +183,7 @@ def test_storage_blocks_give_the_same_picture(mapper, other_mapper, library, mon
     """Software drivers read the same data through image units instead of storage blocks."""
     as_it_is = picture(mapper)
     monkeypatch.setattr(library, "_reads_texels", False)
-    monkeypatch.delitem(library._programs, ("camera_paths/final_gather/share.comp", (), ()))
+    monkeypatch.delitem(library._programs, ("final_gather/reuse.comp", (), ()))
     np.testing.assert_array_equal(picture(other_mapper), as_it_is)
 
 

@@ -9,7 +9,7 @@ import pytest
 from rppm_addon.integrator.density_estimation.radii import (
     EXPECTED_PHOTONS,
     fitted_wide_radius,
-    most_radius_factor,
+    maximum_radius_factor,
     photons_found,
     photons_found_by_gathering,
     radius_in_pixels,
@@ -45,9 +45,9 @@ def test_radius_follows_the_frame():
 
 
 def test_radii_that_the_user_gives_are_exact():
-    assert most_radius_factor(RenderSettings()) > 1.0
+    assert maximum_radius_factor(RenderSettings()) > 1.0
     for exact in ({"use_adaptive_radius": False}, {"radius_minimum": 0.1}, {"radius_maximum": 0.1}):
-        assert most_radius_factor(RenderSettings(**exact)) == 1.0
+        assert maximum_radius_factor(RenderSettings(**exact)) == 1.0
 
 
 def test_limits_follow_the_view_and_the_user():

@@ -36,8 +36,8 @@ class CameraPathFlag(enum.IntFlag):
     """The path has met nothing but transparent surfaces since the camera."""
     SURFACE_FOUND = 2
     """The passes have the path's first surface."""
-    GATHERED = 4
-    """The path has left a surface that stores photons, for light that others send there."""
+    FINAL_GATHER = 4
+    """The path's ray is of a final gather, or follows one: it has left a surface by a lobe that stores photons."""
     DIFFUSE = 8
     """The event was diffuse."""
     TRANSMITTED = 16
@@ -45,9 +45,10 @@ class CameraPathFlag(enum.IntFlag):
     SINGULAR = 32
     """The event had a single direction."""
     CAUSTIC = 64
-    """Since GATHERED, something has scattered the path or taken a share of direct light."""
-    GATHERED_AGAIN = 128
-    """The path has left a second surface that stores photons."""
+    """Since the ray of its final gather left, a specular lobe has scattered the path, or a transparent surface that
+    stops shadow rays has weakened it."""
+    SECONDARY_GATHER = 128
+    """The path has left a second surface by a lobe that stores photons."""
     DENOISING_DATA_FOUND = 256
     """The passes of denoisers have the path's surface."""
     LIGHTS_FOUND = 512
@@ -69,13 +70,16 @@ CAMERA_PATH = Record(
     depth="uint",
     lit_normal="uint",
     lit_from="uint",
+    photon_radius="float",
 )
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
 the clip start, ``straight_length`` of those that led straight through surfaces since the last event of another kind,
 ``primary_radius`` the radius of a pixel's cone at distance 1, or of its beam of parallel rays, from the primary hit on
 that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`` that of the scattered direction in
 1/sr where shadow rays sample the same light, else 0; ``depth`` counts bounces and transparent surfaces (Depths);
-``lit_normal`` and ``lit_from`` tell how these shadow rays chose their light (shaders/camera_paths/importons/scatter_point.glsl)."""
+``lit_normal`` and ``lit_from`` hold how these shadow rays chose their light (shaders/camera_paths/importons/scatter_point.glsl);
+``photon_radius`` is the radius of the disk, meters, in which photons count at the vertex where the last ray of the
+path's final gather left: photons bring some of the light there that this ray brings, too."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Radiance of the pixels of a band, W/(m^2 sr), and alpha."""

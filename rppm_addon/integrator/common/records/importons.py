@@ -27,11 +27,11 @@ IMPORTON = Record(
     next="uint",
     gathers="uint",
     shading_normal="uint",
-    least_radius="float",
+    minimum_radius="float",
     history="uint",
 )
 """A camera path vertex where radiance is estimated; radius 0 marks none. Photons that know their footprint count within
-a radius of their own between ``least_radius`` and ``radius``. The weights already hold
+a radius of their own between ``minimum_radius`` and ``radius``. The weights already hold
 the path's throughput, diffuse and translucent also 1 / pi. ``direction`` points back to the viewer;
 ``next`` links lists of the splat cubemap; ``gathers`` is a GatherFlag. ``history`` is the
 PathHistory of the path as it came, and above as it goes on, which stays when it ends; in the upper bits its depth
@@ -43,9 +43,9 @@ class GatherFlag(enum.IntFlag):
     """Flags of the photons that an importon gathers; without the first flag it takes all photons."""
 
     ORIGIN = 1
-    """The importon leaves indirect photons to its path, which sets out to gather there."""
+    """The importon is the origin of its path's final gather, and leaves indirect photons to the ray."""
     HIT = 2
-    """The importon stands where a gathering ray ended, and counts for the vertex that the ray set out from."""
+    """The importon is at the end of the ray of a final gather, and its light counts at the origin of that ray."""
 
 
 PHOTON_FACTOR_SHIFT = 8

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emission along the ray of a camera path: of media, light objects, surfaces and the environment. The includer
+// includes camera_paths/importons/path_vertex.glsl before.
+
+// Radiance that arrives at the origin of a final gather counts by the throughput there.
+void add_radiance(PathSegment segment, vec4 radiance) {
+    vec3 weight = is_final_gather(segment.path) ? final_gather_origins[segment.index].weight : vec3(1.0);
+    radiances[segment.index] += vec4(weight, 1.0) * radiance;
+}
+
+// Media along the ray weaken what is behind them, and emit light themselves. Neighboring pixels reuse that light where
+// the ray is of a final gather.
+void handle_media(inout PathSegment segment) {
+    if (segment.path.flags >> FIRST_MEDIUM == 0u) return;
+    vec3 emitted = segment.path.throughput * segment_emission(segment.path.flags, segment.distance);
+    if (is_final_gather(segment.path)) final_gather_hits[segment.index].radiance += emitted;
+    else radiances[segment.index].rgb += emitted;
+    segment.path.throughput *= segment_transmittance(segment.path.flags, segment.distance);
+}
+
+// Radiance of the light objects that the ray passes, at its origin.
+vec3 passed_emission(PathSegment segment) {
+    CameraPath path = segment.path;
+    if (!path_collects_emission(path) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
+    return visible_light(segment.from, segment.ray, segment.distance, camera_ray_kind(path.flags),
+                         path_absorption(path.flags));
+}
+
+// MIS weight of a ray that meets an emissive triangle, which shadow rays from its origin sample as well.
+float emission_mis_weight(ScatterPoint from, uint triangle) {
+    if (!(from.pdf > 0.0)) return 1.0;
+    float pdf = emissive_triangle_pdf(from.lit.position, triangle);
+    uint leaf = uint(triangle_vertices[3u * triangle + 1u].w);
+    if (pdf > 0.0 && leaf > 0u) pdf *= light_probability(from.lit, from.environment_irradiance, KIND_TRIANGLES, leaf);
+    else pdf = 0.0;
+    return scatter_mis_weight(from.pdf, pdf);
+}
+
+// Radiance of a surface, weighted by the path's throughput, and what a holdout takes of the alpha. Shadow rays alone
+// bring the emission that the path's flags say was sampled, and to a final gather that of linked lights.
+vec4 surface_emission(CameraPath path, ScatterPoint from, Closure closure) {
+    vec4 radiance = vec4(0.0);
+    uint traits = emitter_traits(closure.triangle);
+    bool is_sampled = (path.flags & PATH_LIGHTS_FOUND) != 0u && (traits & EMITTER_REFLECTED) != 0u;
+    bool is_for_shadow_rays = from.gathers && (iteration.gathers_lights == 0u || traits >> EMITTER_LINK_SHIFT != 0u);
+    if (largest(closure.emission) > 0.0 && path_collects_emission(path) && !is_sampled && !is_for_shadow_rays)
+        radiance.rgb = path.throughput * closure.emission * emission_mis_weight(from, closure.triangle);
+    if ((path.flags & PATH_CAMERA_TRANSPARENT) != 0u)
+        radiance.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
+    return radiance;
+}
+
+// lights: radiance of the light objects that the ray has passed.
+void handle_emission(PathSegment segment, SurfaceVertex vertex, vec3 lights) {
+    vec4 passed = vec4(segment.origin_throughput * lights, 0.0);
+    add_radiance(segment, passed + surface_emission(vertex.path, segment.from, vertex.closure));
+}
