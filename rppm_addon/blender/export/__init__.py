@@ -22,8 +22,8 @@ from .light_linking import LightLinks
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
 from .objects.assets import export_asset_names
-from .objects.object_pass import Placed
 from .objects.objects import ObjectExporter
+from .objects.placements import Placed
 from .omissions import OmissionList, objects_of
 from .report import ExportStopped, Report
 from .settings import export_cubemap_center, export_dicing_rate, export_exposure, export_settings, preview_settings

@@ -20,8 +20,8 @@ from .matrices import usable_matrices
 from .meshes.meshes import read_shape, read_velocities
 from .meshes.rendered_meshes import rendered_mesh
 from .objects.mesh_table import MeshTable
-from .objects.object_pass import Identity, Placed, identity_of, identity_of_hair
 from .objects.objects import ObjectExporter
+from .objects.placements import Identity, Placed, identity_of, identity_of_hair
 from .strands.particle_hair import hair_systems
 from .strands.round_meshes import ROUND_TYPES, Hair, RoundSource, round_shape_at, round_velocities
 from .sync import read_edits

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Features that a file may use and no picture of RPPM shows, so that no export leaves them out in silence.
 
-Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (objects/object_pass.py).
+Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (objects/instance_reader.py).
 """
 
 from collections.abc import Callable, Iterable, Iterator

@@ -21,8 +21,9 @@ from .libraries import warn_of_missing
 from .light_linking import LightLinks
 from .lights.world import export_world
 from .objects.assets import export_asset_names
-from .objects.object_pass import ObjectPass, Placed
+from .objects.object_pass import ObjectPass
 from .objects.objects import ObjectExporter
+from .objects.placements import Placed
 from .omissions import OmissionList
 from .report import Report
 from .settings import export_cubemap_center, export_dicing_rate, export_exposure, export_settings
@@ -194,7 +195,9 @@ class SceneSync:
             self._export(depsgraph, camera, edits, shown)
         except Unfinished:
             self._is_unfinished = True
-            return ExportProgress() if self._pass is None else ExportProgress(self._pass.place, self._pass.count)
+            return (
+                ExportProgress() if self._pass is None else ExportProgress(self._pass.walk.done, self._pass.walk.count)
+            )
         except BaseException:
             self._pass = None
             raise
@@ -327,7 +330,7 @@ class SceneSync:
             unchanged, moved = ({}, {}) if self._pending.attributes else self._known()
             self._pass = self._objects.begin(unchanged, moved)
             self._omissions = OmissionList()
-        placed = self._objects.go_on(self._pass, depsgraph, shown)
+        placed = self._objects.advance(self._pass, depsgraph, shown)
         self._omissions.look_at_all(depsgraph, self._report.slices)
         self._placed = placed
 
@@ -337,7 +340,7 @@ class SceneSync:
             return {}, {}
         instances, pending = self._placed.instances, self._pending
         unchanged, moved = {}, {}
-        for uid, place in self._placed.alone.items():
+        for uid, place in self._placed.single_instances.items():
             if uid not in pending.objects:
                 unchanged[uid] = instances[place]
             elif uid not in pending.looks:
@@ -350,19 +353,21 @@ class SceneSync:
         for uid, source in edits.objects.items():
             if source.is_instancer or len(source.particle_systems) > 0:
                 return False
-            if uid in placed.alone:
+            if uid in placed.single_instances:
                 if uid in self._pending.shapes and any(modifier.type == "NODES" for modifier in source.modifiers):
                     return False  # they may bring instances
                 changed.append(uid)
-            elif uid in placed.lights_alone:
+            elif uid in placed.single_lights:
                 with self._report.about(("object", uid)):
                     light = self._objects.light(source, np.array(source.matrix_world, np.float64))
                 if light is None:
                     return False
-                placed.lights[placed.lights_alone[uid]] = light
+                placed.lights[placed.single_lights[uid]] = light
             elif source.type not in _SHAPELESS:
                 return False
-        before = [None if uid in self._pending.looks else placed.instances[placed.alone[uid]] for uid in changed]
+        before = [
+            None if uid in self._pending.looks else placed.instances[placed.single_instances[uid]] for uid in changed
+        ]
         instances = self._objects.instances(depsgraph, [edits.objects[uid] for uid in changed], before)
         if sampled != self._objects.materials.sampled:  # new materials ask for attributes of all meshes
             self._pending.attributes = True
@@ -370,5 +375,5 @@ class SceneSync:
         if any(instance is None for instance in instances):
             return False
         for uid, instance in zip(changed, instances, strict=True):
-            placed.instances[placed.alone[uid]] = instance
+            placed.instances[placed.single_instances[uid]] = instance
         return True

@@ -3,7 +3,7 @@
 
 import bpy
 
-from ..export.objects.object_pass import SURFACE_TYPES
+from ..export.objects.instance_reader import SURFACE_TYPES
 from .base import RppmPanel
 
 _SHAPES = (

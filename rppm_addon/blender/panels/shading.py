@@ -4,7 +4,7 @@
 import bpy
 
 from ..colored_glasses import colored_glasses
-from ..export.objects.object_pass import SURFACE_TYPES
+from ..export.objects.instance_reader import SURFACE_TYPES
 from .base import RppmPanel, letters_across, paragraph
 from .nodes import RppmNodePanel
 
