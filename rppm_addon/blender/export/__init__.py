@@ -9,6 +9,7 @@ from ...scene import Scene
 from ...scene.errors import SceneError
 from ...scene.garbage import collector_paused
 from ...session.bake_passes import BakePass
+from .assembly import fill_scene
 from .baking import BakePixels, bake_settings, camera_beside, look_at_texels, seen_from
 from .camera.camera import export_camera
 from .camera.eyes import Eye, views_of
@@ -21,14 +22,13 @@ from .libraries import warn_of_missing
 from .light_linking import LightLinks
 from .lights.world import export_world
 from .motion import MotionExporter, is_blurred, wants_neighbors
-from .objects.assets import export_asset_names
 from .objects.objects import ObjectExporter
-from .objects.placements import Placed
 from .omissions import OmissionList, objects_of
 from .report import ExportStopped, Report
-from .settings import export_cubemap_center, export_dicing_rate, export_exposure, export_settings, preview_settings
+from .settings import export_exposure, export_settings, preview_settings
+from .slices import ExportProgress
 from .stamps import export_stamps
-from .sync import ExportProgress, SceneSync
+from .sync import SceneSync
 
 __all__ = [
     "BakePixels",
@@ -74,11 +74,11 @@ def export_scene(
     placed = objects.export(depsgraph, identify=blurred or neighbors)
     scene.world, suns = export_world(world_of(depsgraph), context)
     if not is_preview:  # whose scene is Blender's own
-        _tell_omissions(depsgraph, context.report)
+        _warn_of_omissions(depsgraph, context.report)
     if blurred or neighbors:
         placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
-    scene.lights = placed.lights + suns
-    _fill(scene, depsgraph, context, objects, placed)
+    fill_scene(scene, depsgraph, context, objects, placed, suns)
+    scene.stamps = export_stamps(source)
     return scene
 
 
@@ -102,9 +102,9 @@ def export_baked_scene(
     objects = ObjectExporter(context)
     placed = objects.export(depsgraph, identify=True)
     scene.world, suns = export_world(world_of(depsgraph), context)
-    _tell_omissions(depsgraph, context.report)
-    scene.lights = placed.lights + suns
-    _fill(scene, depsgraph, context, objects, placed)
+    _warn_of_omissions(depsgraph, context.report)
+    fill_scene(scene, depsgraph, context, objects, placed, suns)
+    scene.stamps = export_stamps(source)
     look_at_texels(scene, baked, placed, pixels, seen_from(source, scene.camera), bake_pass)
     return scene
 
@@ -126,31 +126,12 @@ def _context_of(
     context = ExportContext(report)
     context.read_from(depsgraph)
     context.light_links = LightLinks(depsgraph.view_layer)
-    context.light_links.tell(report)
+    context.light_links.warn(report)
     return context
 
 
-def _tell_omissions(depsgraph: bpy.types.Depsgraph, report: Report) -> None:
+def _warn_of_omissions(depsgraph: bpy.types.Depsgraph, report: Report) -> None:
     warn_of_missing(report)
     omissions = OmissionList()
     omissions.look_at(objects_of(depsgraph))
-    omissions.tell(depsgraph, report)
-
-
-def _fill(
-    scene: Scene, depsgraph: bpy.types.Depsgraph, context: ExportContext, objects: ObjectExporter, placed: Placed
-) -> None:
-    """Give a scene what was exported for it, but for its lights."""
-    source = depsgraph.scene_eval
-    scene.cubemap_center = export_cubemap_center(depsgraph)
-    scene.exposure = export_exposure(source)
-    scene.dicing_rate = export_dicing_rate(source, context.viewport)
-    scene.meshes, scene.instances, scene.materials = (
-        objects.meshes.meshes,
-        placed.instances,
-        objects.materials.materials,
-    )
-    scene.images = context.images.images
-    scene.asset_names = export_asset_names(depsgraph, scene.settings)
-    scene.stamps = export_stamps(source)
-    scene.warnings = context.report.warnings
+    omissions.warn(depsgraph, report)

@@ -51,7 +51,7 @@ class LightLinks:
         """Return the linking of what an object brings, itself or its instances; None where it is not linked."""
         return self._by_uid.get(owner.original.session_uid) if self._by_uid else None
 
-    def tell(self, report: Report) -> None:
+    def warn(self, report: Report) -> None:
         """Warn where there are more collections or sets than lights can tell apart."""
         if self.are_too_many:
             report.warn(

@@ -16,6 +16,7 @@ from .camera.camera import camera_pose, export_camera
 from .camera.eyes import Eye
 from .context import ExportContext
 from .culling import Culling
+from .edits import read_edits
 from .matrices import usable_matrices
 from .meshes.meshes import read_shape, read_velocities
 from .meshes.rendered_meshes import rendered_mesh
@@ -24,7 +25,6 @@ from .objects.objects import ObjectExporter
 from .objects.placements import Identity, Placed, identity_of, identity_of_hair
 from .strands.particle_hair import hair_systems
 from .strands.round_meshes import ROUND_TYPES, Hair, RoundSource, round_shape_at, round_velocities
-from .sync import read_edits
 
 MIDDLE = 0.5
 _WITH_SHAPES = {"MESH", *ROUND_TYPES}

@@ -135,7 +135,7 @@ class OmissionList:
                 elif omission in self._users:
                     self._users[omission].pop(uid, None)
 
-    def tell(self, depsgraph: bpy.types.Depsgraph, report: Report) -> None:
+    def warn(self, depsgraph: bpy.types.Depsgraph, report: Report) -> None:
         """Have the report name what the objects so far, the scene and its view layer use, each once."""
         scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         without, switched_off = _passes_without(layer), passes_of_cycles_only(layer)
