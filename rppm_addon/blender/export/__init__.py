@@ -58,7 +58,7 @@ def export_scene(
     """Everything a render of the depsgraph's scene and view layer needs, copied out of Blender.
 
     engine: shows the progress and is asked for test_break; should_stop: asked as well.
-    Raises SceneError when there is nothing to render from, ExportStopped when told to stop.
+    Raises SceneError when there is nothing to render from, ExportStopped when the user stops the export.
     """
     context = _context_of(depsgraph, engine, should_stop)
     source = depsgraph.scene_eval

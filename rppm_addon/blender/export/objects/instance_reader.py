@@ -186,6 +186,8 @@ class InstanceReader:
         multiplied: bpy.types.DepsgraphObjectInstance | None,
     ) -> InstanceDescription:
         name, random, holdout = source.name, 0.0, False
+        # The object that Blender makes up for an instance may have another color than the one that it stands for.
+        holder = source if multiplied is None else multiplied.instance_object
         if multiplied is None:
             random = _random(name)
             visibility, holdout = self._context.masks.of(source, visibility, source.is_holdout)
@@ -194,7 +196,7 @@ class InstanceReader:
             materials,
             name,
             source.pass_index,
-            source.color[:],
+            holder.color[:],
             random,
             visibility,
             holdout,

@@ -52,7 +52,7 @@ class ObjectExporter:
         shown: which of the original objects are to be seen, all if None. Raises Unfinished when the slice is over, and
         ExportStopped.
         """
-        with self._context.report.about("objects", goes_on=objects.walk.done > 0):
+        with self._context.report.about("objects", is_continued=objects.walk.done > 0):
             placed = objects.advance(depsgraph, shown)
         self.meshes.end_pass()
         return placed
@@ -60,13 +60,13 @@ class ObjectExporter:
     def instances(
         self, depsgraph: bpy.types.Depsgraph, sources: list[bpy.types.Object], before: list[Instance | None]
     ) -> list[Instance | None]:
-        """The instances of mesh objects that stand for themselves alone; None of one that is not to be rendered.
+        """The instances of mesh objects that nothing multiplies; None for an object that is not rendered.
 
         before: of those that at most were moved, the instances that they had.
         """
         reader = InstanceReader(self._context, self.materials, self.meshes)
         matrices, usable = usable_matrices(matrices_of(depsgraph, sources))
-        with self._context.report.about("objects", goes_on=True):
+        with self._context.report.about("objects", is_continued=True):
             descriptions = [
                 reader.describe(source, before=known) if good and source.type == "MESH" else None
                 for source, good, known in zip(sources, usable.tolist(), before, strict=True)
