@@ -185,12 +185,13 @@ class InstanceReader:
         visibility: RayVisibility,
         multiplied: bpy.types.DepsgraphObjectInstance | None,
     ) -> InstanceDescription:
-        name, random, holdout = source.name, 0.0, False
-        # The object that Blender makes up for an instance may have another color than the one that it stands for.
-        holder = source if multiplied is None else multiplied.instance_object
+        context, name = self._context, source.name
         if multiplied is None:
-            random = _random(name)
-            visibility, holdout = self._context.masks.of(source, visibility, source.is_holdout)
+            holder, random = source, _random(name)
+            visibility, holdout = context.masks.of(source, visibility, source.is_holdout)
+        else:
+            # What Blender makes up for an instance may have another color than the object that it stands for.
+            holder, random, holdout = multiplied.instance_object, 0.0, False
         description = InstanceDescription(
             mesh,
             materials,
@@ -201,9 +202,9 @@ class InstanceReader:
             visibility,
             holdout,
             source.is_shadow_catcher,
-            self.attribute_values(source, materials, multiplied),
-            self._light_group(source),
-            self._context.light_links.of(source),
+            self.attribute_values(source, materials, multiplied) if self._wanted_attributes(materials)[1] else {},
+            light_group_of(source) if context.has_light_groups else "",
+            context.light_links.of(source),
             *_terminator_offsets(source),
         )
         if mesh is not None:

@@ -42,14 +42,14 @@ class SingleObjects:
         original, reader, placements = source.original, self._reader, self._placements
         if not selection.shows(original) or selection.culling.leaves_out(source, matrix):
             return
-        uid = original.session_uid
+        uid, kind = original.session_uid, source.type
         identity = identity_of(entry, original, original) if placements.identify else ()
-        if source.type == "LIGHT":
+        if kind == "LIGHT":
             light = reader.light(source, matrix)
             if light is not None:
                 placements.add_light(light, uid, identity)
             return
-        is_round = source.type in ROUND_TYPES
+        is_round = kind in ROUND_TYPES
         if is_round:  # an object may show several
             placements.mark_multiple(uid)
             reader.faceless.brings_others(uid)
@@ -60,7 +60,7 @@ class SingleObjects:
         description = reader.describe(source, before=None if is_round else self._moved.get(uid))
         if description is None:
             return
-        if source.type in CONVERTED_TYPES:
+        if kind in CONVERTED_TYPES:
             self._curves.add(source, description, matrix, identity)
             return
         if original.type in CONVERTED_TYPES:
