@@ -14,27 +14,21 @@ from .camera.culling import Culling
 from .camera.eyes import Eye, views_of
 from .camera.view import export_view
 from .common.report import ExportStopped, Report
+from .common.slices import ExportProgress
 from .context import ExportContext
-from .instances.assets import export_asset_names
-from .instances.object_pass import Placed
 from .instances.objects import ObjectExporter
 from .omissions import OmissionList, objects_of
 from .shading.lights.world import export_world
+from .updates.assembly import fill_scene
 from .updates.baking import BakePixels, bake_settings, camera_beside, look_at_texels, seen_from
 from .updates.frames import FrameExporter
 from .updates.libraries import warn_of_missing
 from .updates.motion import MotionExporter, is_blurred, wants_neighbors
 from .updates.stamps import export_stamps
-from .updates.sync import ExportProgress, SceneSync
+from .updates.sync import SceneSync
 from .view_layer.layers import world_of
 from .view_layer.light_linking import LightLinks
-from .view_layer.settings import (
-    export_cubemap_center,
-    export_dicing_rate,
-    export_exposure,
-    export_settings,
-    preview_settings,
-)
+from .view_layer.settings import export_exposure, export_settings, preview_settings
 
 __all__ = [
     "BakePixels",
@@ -64,7 +58,7 @@ def export_scene(
     """Everything a render of the depsgraph's scene and view layer needs, copied out of Blender.
 
     engine: shows the progress and is asked for test_break; should_stop: asked as well.
-    Raises SceneError when there is nothing to render from, ExportStopped when told to stop.
+    Raises SceneError when there is nothing to render from, ExportStopped when the user stops the export.
     """
     context = _context_of(depsgraph, engine, should_stop)
     source = depsgraph.scene_eval
@@ -80,11 +74,11 @@ def export_scene(
     placed = objects.export(depsgraph, identify=blurred or neighbors)
     scene.world, suns = export_world(world_of(depsgraph), context)
     if not is_preview:  # whose scene is Blender's own
-        _tell_omissions(depsgraph, context.report)
+        _warn_of_omissions(depsgraph, context.report)
     if blurred or neighbors:
         placed = MotionExporter(depsgraph, engine, context, neighbors).run(scene, objects, placed)
-    scene.lights = placed.lights + suns
-    _fill(scene, depsgraph, context, objects, placed)
+    fill_scene(scene, depsgraph, context, objects, placed, suns)
+    scene.stamps = export_stamps(source)
     return scene
 
 
@@ -108,9 +102,9 @@ def export_baked_scene(
     objects = ObjectExporter(context)
     placed = objects.export(depsgraph, identify=True)
     scene.world, suns = export_world(world_of(depsgraph), context)
-    _tell_omissions(depsgraph, context.report)
-    scene.lights = placed.lights + suns
-    _fill(scene, depsgraph, context, objects, placed)
+    _warn_of_omissions(depsgraph, context.report)
+    fill_scene(scene, depsgraph, context, objects, placed, suns)
+    scene.stamps = export_stamps(source)
     look_at_texels(scene, baked, placed, pixels, seen_from(source, scene.camera), bake_pass)
     return scene
 
@@ -132,31 +126,12 @@ def _context_of(
     context = ExportContext(report)
     context.read_from(depsgraph)
     context.light_links = LightLinks(depsgraph.view_layer)
-    context.light_links.tell(report)
+    context.light_links.warn(report)
     return context
 
 
-def _tell_omissions(depsgraph: bpy.types.Depsgraph, report: Report) -> None:
+def _warn_of_omissions(depsgraph: bpy.types.Depsgraph, report: Report) -> None:
     warn_of_missing(report)
     omissions = OmissionList()
     omissions.look_at(objects_of(depsgraph))
-    omissions.tell(depsgraph, report)
-
-
-def _fill(
-    scene: Scene, depsgraph: bpy.types.Depsgraph, context: ExportContext, objects: ObjectExporter, placed: Placed
-) -> None:
-    """Give a scene what was exported for it, but for its lights."""
-    source = depsgraph.scene_eval
-    scene.cubemap_center = export_cubemap_center(depsgraph)
-    scene.exposure = export_exposure(source)
-    scene.dicing_rate = export_dicing_rate(source, context.viewport)
-    scene.meshes, scene.instances, scene.materials = (
-        objects.meshes.meshes,
-        placed.instances,
-        objects.materials.materials,
-    )
-    scene.images = context.images.images
-    scene.asset_names = export_asset_names(depsgraph, scene.settings)
-    scene.stamps = export_stamps(source)
-    scene.warnings = context.report.warnings
+    omissions.warn(depsgraph, report)

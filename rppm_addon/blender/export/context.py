@@ -52,7 +52,7 @@ class ExportContext:
 
     @property
     def untracked_reads(self) -> int:
-        """How often something was read that changes without the depsgraph telling."""
+        """How often something was read that changes without the depsgraph reporting it."""
         return self.owner_reads + self.images.reads_by_frame
 
     def read_from(self, depsgraph: bpy.types.Depsgraph) -> None:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Features that a file may use and no picture of RPPM shows, so that no export leaves them out in silence.
 
-Nodes say so where they are exported (nodes/), as do objects of kinds that have no surface (instances/object_pass.py).
+Nodes say so where they are exported (shading/nodes/), as do objects of kinds that have no
+surface (instances/instance_reader.py).
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -135,7 +136,7 @@ class OmissionList:
                 elif omission in self._users:
                     self._users[omission].pop(uid, None)
 
-    def tell(self, depsgraph: bpy.types.Depsgraph, report: Report) -> None:
+    def warn(self, depsgraph: bpy.types.Depsgraph, report: Report) -> None:
         """Have the report name what the objects so far, the scene and its view layer use, each once."""
         scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
         without, switched_off = _passes_without(layer), passes_of_cycles_only(layer)

@@ -4,7 +4,7 @@
 import bpy
 
 from ..colored_glasses import colored_glasses
-from ..export.instances.object_pass import SURFACE_TYPES
+from ..export.instances.instance_reader import SURFACE_TYPES
 from .base import RppmPanel, letters_across, paragraph
 from .nodes import RppmNodePanel
 

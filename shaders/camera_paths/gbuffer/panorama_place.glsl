@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where in the frame panoramas show a direction (right, up, forward), the inverse of camera_paths/gbuffer/panorama.glsl: shares of
-// the frame, which may lie outside of it. The includer declares the storage block of the camera.
+// The place in the frame where a panorama shows a direction (right, up, forward), as fractions of the frame's width and
+// height: the inverse of camera_paths/gbuffer/panorama.glsl. The place may lie outside the frame. The includer declares
+// the storage block of the camera.
 #include "common/constants.glsl"
 #include "camera_paths/gbuffer/projections.glsl"
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rays of camera paths that escape to the environment. The includer includes camera_paths/importons/emission.glsl before.
+// Rays of camera paths that escape to the environment.
+// The includer includes camera_paths/importons/emission.glsl before.
 
 // Sampling of the environment by shadow rays from the origin of a ray, in the ray's direction.
 struct EnvironmentSampling {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Importons: where photons are looked up for a camera path. The includer includes camera_paths/importons/path_vertex.glsl before.
+// Importons: where photons are looked up for a camera path.
+// The includer includes camera_paths/importons/path_vertex.glsl before.
 
 // One rough lobe stands for all lobes that store photons, selected by its albedo.
 ClosureLobe sample_importon_lobe(SurfaceVertex vertex, vec4 weights, float u) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sample of the BSDF at a vertex of a camera path. The includer includes camera_paths/importons/path_vertex.glsl before.
+// A sample of the BSDF at a vertex of a camera path.
+// The includer includes camera_paths/importons/path_vertex.glsl before.
 
 struct BsdfSample {
     vec3 direction;

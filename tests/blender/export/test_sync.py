@@ -2,6 +2,7 @@
 """A viewport's scene follows every edit: it equals one exported anew, and shares what did not change."""
 
 import collections
+import functools
 import random
 import time
 
@@ -278,13 +279,21 @@ def test_what_objects_lack_is_told_until_they_have_it(synced):
 
 def test_an_edit_of_one_object_reads_no_other(synced, monkeypatch):
     """The cost of an edit does not grow with the scene: the depsgraph's instances are not listed again."""
-    passes = []
-    monkeypatch.setattr(synced._objects, "begin", lambda *a: passes.append(a))
+    asked = []
+
+    def shown(source: bpy.types.Object) -> bool:
+        asked.append(source.name)
+        return True
+
+    monkeypatch.setattr(synced, "update", functools.partial(synced.update, shown=shown))
     for edit in (move, edit_mesh, paint, brighten, move_light, recolor_world):
         edit()
         bpy.context.view_layer.update()
         assert same(synced.scene, fresh()), edit.__name__
-    assert not passes
+    assert not asked
+    _add("New", bpy.data.meshes["Cube"])
+    bpy.context.view_layer.update()
+    assert {"Cube", "Twin", "Other", "New"} <= set(asked)
 
 
 def test_a_mesh_that_bends_keeps_its_other_arrays(synced):

@@ -26,7 +26,7 @@ def export_camera(
 ) -> Camera:
     """The scene's active camera, or the one that is used in its place, as evaluated in the depsgraph.
 
-    eye: of the view that is rendered. report: told where the camera sees the world only.
+    eye: of the view that is rendered. report: takes a warning where the camera sees the world only.
     Raises SceneError when there is no camera that can be used.
     """
     used = used or eye.camera_of(scene)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Culling of Simplify: objects that ask for it are left out where the camera does not see them, or from afar."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
@@ -86,3 +88,16 @@ class Culling:
         place = self._camera.matrix[:3, 3]
         nearest = np.clip(place, corners.min(axis=0), corners.max(axis=0))
         return bool(np.linalg.norm(nearest - place) > self._distance)
+
+
+@dataclass(frozen=True)
+class Selection:
+    """The objects that an export renders: shown in the viewport, and not culled."""
+
+    culling: Culling
+    shown: Callable[[bpy.types.Object], bool] | None = None
+    """Whether an original object is shown; all are if None."""
+
+    def shows(self, original: bpy.types.Object) -> bool:
+        """Whether an original object is shown."""
+        return self.shown is None or self.shown(original)

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import bpy
 
 _SPOT_SIZE = 0.25 * math.pi
-"""Radians of a new light; of lights that are no spots Blender does not tell it."""
+"""Radians of a new light; Blender does not give the angle of lights that are no spots."""
 
 
 @dataclass(frozen=True)

@@ -45,10 +45,10 @@ class Report:
         return list({text: None for texts in self._warnings.values() for text in texts})
 
     @contextlib.contextmanager
-    def about(self, part: Hashable, goes_on: bool = False) -> Iterator[None]:
-        """Forget what was said of a part, which is exported anew in the with block, unless that ``goes_on``."""
+    def about(self, part: Hashable, is_continued: bool = False) -> Iterator[None]:
+        """Forget the warnings about a part, which the with block exports, unless its export ``is_continued``."""
         outer, self._part = self._part, part
-        if not goes_on:
+        if not is_continued:
             self._warnings.pop(part, None)
         try:
             yield

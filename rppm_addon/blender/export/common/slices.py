@@ -5,12 +5,22 @@ import math
 import threading
 import time
 from collections.abc import Callable, Hashable
+from dataclasses import dataclass
 from typing import Any
 
 _MOST_STRETCH = 2.5
 """By how much a slice may last longer."""
 _FRESH_SECONDS = 0.005
 """Oldest age of a slice, in seconds, at which a single long call still begins in it (step_alone)."""
+
+
+@dataclass(frozen=True)
+class ExportProgress:
+    """Progress of an export in slices."""
+
+    objects: int = 0
+    of: int = 0
+    """Number of all objects; 0 as long as there is more to be done before objects."""
 
 
 class Unfinished(Exception):

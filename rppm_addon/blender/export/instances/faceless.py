@@ -33,7 +33,7 @@ class FacelessObjects:
         """Take note that the object of this session_uid shows instances, strands or points."""
         self._bringers.add(uid)
 
-    def tell(self, report: Report) -> None:
+    def warn(self, report: Report) -> None:
         """Have the report name those of which nothing is seen."""
         others = self._bringers | (self._multiplied & self._with_nodes)
         names = [name for uid, name in self._names.items() if uid not in others]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Instances and lights of single objects: their meshes, materials and the values that nodes ask for."""
+"""Reads of Blender's objects what a pass over a depsgraph places: descriptions of instances, and lights."""
 
 import functools
 from collections.abc import Callable
@@ -7,19 +7,29 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ....scene import Instance, Light, LightLinking, RayVisibility
-from ..camera.culling import Culling
+from ....scene import Instance, Light, RayVisibility
 from ..common.hashing import hashed
 from ..context import ExportContext
 from ..geometry.meshes.attributes import INSTANCER_GENERATED, INSTANCER_UV, attribute_of
-from ..geometry.meshes.rendered_meshes import is_gas_domain
-from ..geometry.strands.round_meshes import RoundSource
+from ..geometry.meshes.rendered_meshes import has_no_faces, is_gas_domain
+from ..geometry.strands.particle_hair import HairSystem
+from ..geometry.strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..shading.lights.lights import export_light
 from ..shading.nodes.materials import MaterialTable
+from ..shading.nodes.missing_attributes import MissingAttributes
 from ..view_layer.layers import light_group_of
 from ..view_layer.visibility import visibility_of
+from .faceless import FacelessObjects
 from .instance_attributes import InstanceAttributes
+from .instance_description import InstanceDescription, Instancer
 from .mesh_table import MeshTable
+
+CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
+"""Object types that are rendered as the mesh that Blender makes of them."""
+SURFACE_TYPES = {"MESH", *CONVERTED_TYPES, *ROUND_TYPES}
+"""Object types that are rendered as surfaces."""
+UNSUPPORTED_TYPES = {"VOLUME": "volumes"}
+"""Object types that Cycles renders and RPPM does not, with what users call them."""
 
 _USE_UV = {"tex_coord", "attribute", "normal_map", "tangent", "uvmap", "tex_image", "tex_image_tiles"}
 _COORDINATES: dict[str, Callable[[bpy.types.DepsgraphObjectInstance], tuple[float, ...]]] = {
@@ -33,151 +43,122 @@ _WHOLE = {"OBJECT", "INSTANCER"}
 
 
 class InstanceReader:
-    """Makes instances and lights of objects; meshes and materials that it knows are not exported again."""
+    """Reads objects for one pass; meshes and materials that the tables know are not exported again."""
 
-    def __init__(self, context: ExportContext) -> None:
-        self.materials = MaterialTable(context)
-        self.meshes = MeshTable(context)
-        self.report = context.report
+    def __init__(self, context: ExportContext, materials: MaterialTable, meshes: MeshTable) -> None:
         self._context = context
-        self._wants: dict[tuple[tuple[int, ...], frozenset[str]], tuple[set[str], bool]] = {}
+        self._materials = materials
+        self._meshes = meshes
+        self._wanted: dict[tuple[tuple[int, ...], frozenset[str]], tuple[set[str], bool]] = {}
+        """Results of wanted_attributes, by materials and the attributes that rays sample."""
         self.instance_attributes = InstanceAttributes()
+        self.faceless = FacelessObjects()
+        self.missing = MissingAttributes(meshes.meshes, materials.materials, materials.attributes)
 
-    def begin_pass(self) -> None:
-        """Materials may ask for other attributes than before, and these may have changed."""
-        self._wants = {}
-        self.instance_attributes.forget()
+    def keep(self, instance: Instance) -> bool:
+        """Keep the mesh of an unchanged instance in use; False where the mesh has been forgotten."""
+        if not self._meshes.knows(instance.mesh):
+            return False
+        self._meshes.keep(instance.mesh)
+        self.missing.note(instance)
+        return True
 
-    def instance(self, source: bpy.types.Object, matrix: np.ndarray, before: Instance | None) -> Instance | None:
-        """The instance of an object that stands for itself alone; None when it is not to be rendered.
-
-        before: the one that it had, if it was moved at most.
-        """
+    def instancer(self, source: bpy.types.Object, uid: int) -> Instancer:
+        """Read an object that multiplies others. uid: its session_uid."""
         visibility = visibility_of(source)
-        if source.type != "MESH" or not visibility or is_gas_domain(source):
-            return None
-        if before is not None and self.meshes.knows(before.mesh):
-            return self._moved(source, matrix, visibility, before)
-        shading = self.shading(source, visibility)
-        index = self.mesh_index(source, source.data, shading, source.original.session_uid)
-        return None if index is None else shaded_instance(index, source, matrix, shading)
-
-    def _moved(
-        self, source: bpy.types.Object, matrix: np.ndarray, visibility: RayVisibility, before: Instance
-    ) -> Instance:
-        """Return the instance of an object that at most was moved, with the mesh and the materials that it had before.
-
-        The rest is read again, as it may be animated without Blender naming the object as changed.
-        """
-        name, materials = source.name, before.materials
-        visibility, holdout = self.masked(source, visibility, source.is_holdout)
-        return Instance(
-            before.mesh,
-            matrix,
-            materials,
-            name,
-            source.pass_index,
-            tuple(source.color),
-            _random(name),
-            None,
+        layer_visibility, holdout = self._context.masks.of(source, visibility, source.is_holdout)
+        return Instancer(
+            uid,
             visibility,
+            layer_visibility,
             holdout,
             source.is_shadow_catcher,
-            self.attribute_values(source, materials, None) if self.wanted_attributes(materials)[1] else {},
-            self.light_group(source, source),
-            self.linking(source),
-            *_terminator_offsets(source),
+            self._light_group(source),
+            self._context.light_links.of(source),
+            len(source.particle_systems) > 0,
         )
 
-    def light(
-        self, source: bpy.types.Object, matrix: np.ndarray, instancer: bpy.types.Object | None = None
-    ) -> Light | None:
+    def describe(
+        self,
+        source: bpy.types.Object,
+        multiplied: bpy.types.DepsgraphObjectInstance | None = None,
+        before: Instance | None = None,
+    ) -> InstanceDescription | None:
+        """Describe an object, without what its instancer passes on; None where nothing of it is rendered.
+
+        multiplied: the entry of an object that another one multiplies. before: the instance of an object that at most
+        was moved. Curves and the like have no mesh yet. Raises Unfinished when the slice is over.
+        """
+        kind = source.type
+        if kind not in SURFACE_TYPES or (kind == "CURVES" and not self._context.curves.shown):
+            self._warn_of_unsupported(source)
+            return None
+        visibility = visibility_of(source)
+        if not visibility:
+            return None
+        if before is not None and self._meshes.knows(before.mesh):
+            # The rest is read again, as it may be animated without Blender naming the object as changed.
+            self._meshes.keep(before.mesh)
+            return self._described(source, before.mesh, before.materials, visibility, multiplied)
+        holder = source if multiplied is None else multiplied.instance_object
+        is_own = multiplied is None or holder.data == source.data
+        if kind == "MESH" and not self._has_faces(source, is_own):
+            return None  # and its materials are not needed
+        materials, mesh = self._material_slots(source), None
+        if kind not in CONVERTED_TYPES:
+            owner = source if multiplied is None else multiplied.parent
+            mesh = self._mesh_index(holder, source.data, materials, owner)
+            if mesh is None:
+                if kind == "MESH" and is_own:
+                    self.faceless.note(source)
+                return None
+        return self._described(source, mesh, materials, visibility, multiplied)
+
+    def describe_hair(
+        self,
+        source: bpy.types.Object,
+        systems: list[HairSystem],
+        multiplied: bpy.types.DepsgraphObjectInstance | None,
+    ) -> InstanceDescription | None:
+        """Describe the hair of an object's particle systems; None where it has no strands. As describe()."""
+        materials = self._material_slots(source)
+        hair = Hair(source, systems, self._uses_uv(materials))
+        mesh = self._mesh_index(source, hair, materials, source if multiplied is None else multiplied.parent)
+        return None if mesh is None else self._described(source, mesh, materials, visibility_of(source), multiplied)
+
+    def convert(self, source: bpy.types.Object, description: InstanceDescription) -> InstanceDescription | None:
+        """Describe a curve or the like with the mesh that Blender makes of it; None where that has no faces."""
+        mesh = self._mesh_index(source, None, description.materials, source)
+        if mesh is None:
+            return None
+        converted = description._replace(mesh=mesh)
+        self.missing.note(converted)
+        return converted
+
+    def light(self, source: bpy.types.Object, matrix: np.ndarray, instancer: Instancer | None = None) -> Light | None:
         """A light object placed by a matrix (4, 4); None when it gives no light. instancer: what multiplies it."""
         if not np.isfinite(matrix).all():
-            self.report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
+            self._context.report.warn(f'Light "{source.name}": its matrix is not finite, so it is left out')
             return None
         light = export_light(source, matrix, self._context)
         if light is not None and not light.is_portal:
-            owner = instancer or source
-            light.linking, light.light_group = self.linking(owner), self.light_group(source, owner)
+            light.linking = self._context.light_links.of(source) if instancer is None else instancer.linking
+            light.light_group = self._light_group(source) or ("" if instancer is None else instancer.light_group)
         return light
 
-    def shading(
-        self,
-        source: bpy.types.Object,
-        visibility: RayVisibility,
-        multiplied: bpy.types.DepsgraphObjectInstance | None = None,
-    ) -> dict[str, object]:
-        """Materials of an instance and what their nodes may ask about it: members of scene.Instance.
+    def add_owner(self, description: InstanceDescription, instancer: Instancer) -> None:
+        """Record that an instancer brings a mesh that was described before."""
+        self._meshes.add_owner(description.mesh, instancer.uid)
 
-        multiplied: the instance of an object that another one multiplies.
-        """
-        instancer = None if multiplied is None else multiplied.parent
-        owner = instancer or source
-        materials = self._material_slots(source)
-        geometry_offset, shading_offset = _terminator_offsets(source)
-        visibility, holdout = self.masked(owner, visibility, owner.is_holdout)
-        return {
-            "materials": materials,
-            "color": tuple(source.color),
-            "random": 0.0 if instancer is not None else _random(source.name),
-            "visibility": visibility,
-            "holdout": holdout,
-            "shadow_catcher": source.is_shadow_catcher or owner.is_shadow_catcher,
-            "attributes": self.attribute_values(source, materials, multiplied),
-            "light_group": self.light_group(source, owner),
-            "linking": self.linking(owner),
-            "terminator_geometry_offset": geometry_offset,
-            "terminator_shading_offset": shading_offset,
-        }
-
-    def light_group(self, source: bpy.types.Object, owner: bpy.types.Object) -> str:
-        """Return the light group of an object, or else that of the object that multiplies it."""
-        return (light_group_of(source) or light_group_of(owner)) if self._context.has_light_groups else ""
-
-    def linking(self, owner: bpy.types.Object) -> LightLinking | None:
-        """The light linking of what an object brings, itself or what it multiplies."""
-        return self._context.light_links.of(owner)
-
-    @property
-    def use_surfaces(self) -> bool:
-        """Whether the view layer has anything but lights."""
-        return self._context.use_surfaces
-
-    @property
-    def shows_strands(self) -> bool:
-        """Whether the view layer has hair."""
-        return self._context.curves.shown
-
-    @property
-    def may_have_hair(self) -> bool:
-        """Whether any object may have particle systems with hair to be rendered."""
-        return self._context.may_have_hair
-
-    @property
-    def is_render(self) -> bool:
-        """Whether Blender evaluated what renders show, and not viewports."""
-        return self._context.is_render
-
-    def uses_uv(self, materials: list[int]) -> bool:
-        """Whether nodes of any of these materials may ask for the UV map in use."""
-        graphs = (self.materials.materials[material].graph for material in materials)
-        return any(node.kind in _USE_UV for graph in graphs for node in graph.nodes)
-
-    @property
-    def culling(self) -> Culling:
-        """Culling, which tells the objects that are left out."""
-        return self._context.culling
-
-    def masked(self, owner: bpy.types.Object, visibility: RayVisibility, holdout: bool) -> tuple[RayVisibility, bool]:
-        """Visibility and holdout in the view layer (LayerMasks.of)."""
-        return self._context.masks.of(owner, visibility, holdout)
+    def reads_instancer(self, materials: list[int]) -> bool:
+        """Whether materials or rays read attributes that each instance may have of its own."""
+        return any(name.startswith("INSTANCER:") for name in self._wanted_attributes(materials)[0])
 
     def attribute_values(
         self, source: bpy.types.Object, materials: list[int], multiplied: bpy.types.DepsgraphObjectInstance | None
     ) -> dict[str, tuple[float, ...]]:
         """Values of attributes that the object, what multiplies it or its instance there has as a whole."""
-        names, of_objects = self.wanted_attributes(materials)
+        names, of_objects = self._wanted_attributes(materials)
         values: dict[str, tuple[float, ...]] = {}
         for name in names if of_objects else ():
             domain, _, path = name.partition(":")
@@ -196,27 +177,75 @@ class InstanceReader:
                 values[name] = value
         return values
 
-    def wanted_attributes(self, materials: list[int]) -> tuple[set[str], bool]:
-        """Names of the attributes that materials or rays read, and whether any is one of objects."""
-        sampled = self.materials.sampled
-        key = tuple(materials), sampled
-        if key not in self._wants:
-            names = sampled.union(*(self.materials.attributes[material] for material in materials))
-            self._wants[key] = set(names), any(name.partition(":")[0] in _WHOLE for name in names)
-        return self._wants[key]
-
-    def mesh_index(
+    def _described(
         self,
         source: bpy.types.Object,
-        mesh: bpy.types.Mesh | RoundSource | None,
-        shading: dict[str, object],
-        owner: int,
+        mesh: int | None,
+        materials: list[int],
+        visibility: RayVisibility,
+        multiplied: bpy.types.DepsgraphObjectInstance | None,
+    ) -> InstanceDescription:
+        context, name = self._context, source.name
+        if multiplied is None:
+            holder, random = source, _random(name)
+            visibility, holdout = context.masks.of(source, visibility, source.is_holdout)
+        else:
+            # What Blender makes up for an instance may have another color than the object that it stands for.
+            holder, random, holdout = multiplied.instance_object, 0.0, False
+        description = InstanceDescription(
+            mesh,
+            materials,
+            name,
+            source.pass_index,
+            holder.color[:],
+            random,
+            visibility,
+            holdout,
+            source.is_shadow_catcher,
+            self.attribute_values(source, materials, multiplied) if self._wanted_attributes(materials)[1] else {},
+            light_group_of(source) if context.has_light_groups else "",
+            context.light_links.of(source),
+            *_terminator_offsets(source),
+        )
+        if mesh is not None:
+            self.missing.note(description)
+        return description
+
+    def _warn_of_unsupported(self, source: bpy.types.Object) -> None:
+        if source.type in UNSUPPORTED_TYPES:
+            what = UNSUPPORTED_TYPES[source.type]
+            self._context.report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
+
+    def _has_faces(self, source: bpy.types.Object, is_own: bool) -> bool:
+        """Whether a mesh has faces to be rendered. is_own: it is the object's, none that nodes of geometry made."""
+        if is_own and is_gas_domain(source):
+            self._context.report.warn(
+                f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the '
+                "domain's mesh is not shown"
+            )
+            return False
+        if not has_no_faces(source.data):
+            return True
+        if is_own:
+            self.faceless.note(source)
+        return False
+
+    def _mesh_index(
+        self,
+        source: bpy.types.Object,
+        data: bpy.types.Mesh | RoundSource | None,
+        materials: list[int],
+        owner: bpy.types.Object,
     ) -> int | None:
         """Index of an object's mesh with the attributes that its materials read; None of one without faces.
 
-        mesh: None has Blender make one of the object. owner: the session_uid of what brings it.
+        data: None has Blender make a mesh of the object. owner: the object that brings it.
         """
-        return self.meshes.index(source, mesh, self.wanted_attributes(shading["materials"])[0], owner)
+        attributes, _ = self._wanted_attributes(materials)
+        index = self._meshes.index(source, data, attributes, owner.original.session_uid)
+        if index is not None and data is not None and not isinstance(data, bpy.types.Mesh):
+            self._materials.put_on_round_shapes(materials)
+        return index
 
     def _material_slots(self, source: bpy.types.Object) -> list[int]:
         slots = [slot.material for slot in source.material_slots]
@@ -226,19 +255,31 @@ class InstanceReader:
         override = self._context.material_override
         if override is not None:
             slots = [override]
-        return [self.materials.index(material) for material in slots or [None]]
+        return [self._materials.index(material) for material in slots or [None]]
 
+    def _wanted_attributes(self, materials: list[int]) -> tuple[set[str], bool]:
+        """Names of the attributes that materials or rays read, and whether any is one of objects."""
+        sampled = self._materials.sampled
+        key = tuple(materials), sampled
+        if key not in self._wanted:
+            names = sampled.union(*(self._materials.attributes[material] for material in materials))
+            self._wanted[key] = set(names), any(name.partition(":")[0] in _WHOLE for name in names)
+        return self._wanted[key]
 
-def shaded_instance(mesh: int, source: bpy.types.Object, matrix: np.ndarray, shading: dict[str, object]) -> Instance:
-    """An instance of a mesh with what InstanceReader.shading gives."""
-    return Instance(mesh, matrix, object_name=source.name, object_index=source.pass_index, **shading)
+    def _uses_uv(self, materials: list[int]) -> bool:
+        """Whether nodes of any of these materials may ask for the UV map in use."""
+        graphs = (self._materials.materials[material].graph for material in materials)
+        return any(node.kind in _USE_UV for graph in graphs for node in graph.nodes)
+
+    def _light_group(self, source: bpy.types.Object) -> str:
+        return light_group_of(source) if self._context.has_light_groups else ""
 
 
 def _terminator_offsets(source: bpy.types.Object) -> tuple[float, float]:
     """Geometry Offset and Shading Offset of the shadow terminator; before Blender 5 properties of Cycles."""
     if hasattr(source, "shadow_terminator_shading_offset"):
         geometry, shading = source.shadow_terminator_geometry_offset, source.shadow_terminator_shading_offset
-        return min(geometry, 1.0), min(shading, 1.0)
+        return geometry if geometry < 1.0 else 1.0, shading if shading < 1.0 else 1.0
     cycles = getattr(source, "cycles", None)
     return (
         getattr(cycles, "shadow_terminator_geometry_offset", 0.0),

@@ -14,12 +14,15 @@ class ParticleTable:
     """The particles of one slice of a pass over a depsgraph, those of a system read together."""
 
     def __init__(self) -> None:
-        self.frame = 0.0
-        """Frame of the scene."""
+        self._frame = 0.0
         self._systems: dict[int, list[tuple]] = {}
 
+    def begin(self, frame: float) -> None:
+        """Begin a slice at a frame of the scene."""
+        self._frame = frame
+
     def forget(self) -> None:
-        """They may change from here on."""
+        """Forget all particles, which may change after the slice."""
         self._systems = {}
 
     def of(self, instance: bpy.types.DepsgraphObjectInstance) -> Particle | None:
@@ -37,7 +40,7 @@ class ParticleTable:
         if not 0 <= index < len(self._systems[key]):
             return None
         birth, *rest = self._systems[key][index]
-        return Particle(float(index), hashed(index), self.frame - birth, *rest)
+        return Particle(float(index), hashed(index), self._frame - birth, *rest)
 
 
 def _rows(system: bpy.types.ParticleSystem) -> list[tuple]:

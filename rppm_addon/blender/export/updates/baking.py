@@ -11,7 +11,7 @@ from ....scene import Camera, RayVisibility, RenderSettings, Scene, Texels
 from ....scene.errors import SceneError
 from ....session.render.bake_passes import ENVIRONMENT, BakePass
 from ..camera.camera import export_camera
-from ..instances.object_pass import Placed
+from ..instances.placements import Placed
 
 _PRIMITIVE, _DIFFERENTIAL = "BakePrimitive", "BakeDifferential"
 """Passes by which Blender hands over what to bake, as it does to Cycles."""

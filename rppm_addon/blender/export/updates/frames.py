@@ -31,7 +31,7 @@ class FrameExporter:
 
         show: takes what is being exported. eye: of the view that is rendered.
         """
-        # Blender makes a new depsgraph for another layer, but may tell as little of it as of one that has changed.
+        # Blender makes a new depsgraph for another layer, but may report as little of it as of one that has changed.
         layer = depsgraph.scene.session_uid, depsgraph.view_layer_eval.name
         sync = self._sync if layer == self._layer else None
         # Changes that an export which failed has not taken in are reported once only.

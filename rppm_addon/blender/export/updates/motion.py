@@ -22,9 +22,9 @@ from ..geometry.meshes.rendered_meshes import rendered_mesh
 from ..geometry.strands.particle_hair import hair_systems
 from ..geometry.strands.round_meshes import ROUND_TYPES, Hair, RoundSource, round_shape_at, round_velocities
 from ..instances.mesh_table import MeshTable
-from ..instances.object_pass import Identity, Placed, identity_of, identity_of_hair
 from ..instances.objects import ObjectExporter
-from .sync import read_edits
+from ..instances.placements import Identity, Placed, identity_of, identity_of_hair
+from .edits import read_edits
 
 MIDDLE = 0.5
 _WITH_SHAPES = {"MESH", *ROUND_TYPES}

@@ -25,7 +25,7 @@ def overrides_of(depsgraph: bpy.types.Depsgraph) -> tuple[object, ...]:
 
 
 def light_group_of(owner: bpy.types.Object | bpy.types.World) -> str:
-    """The name of its light group. Blender neither tells when that changes nor evaluates it anew."""
+    """The name of its light group. Blender neither reports that it changes nor evaluates it anew."""
     return owner.original.lightgroup
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's light and shadow linking to sets of objects, which Blender does not tell of by itself.
+"""Blender's light and shadow linking to sets of objects, whose changes Blender does not report.
 
 Numbered as Blender does: a collection that emitters name is known by its bit, an object by which collections include
 it and which exclude it, and objects that agree in these are a set.
@@ -51,8 +51,8 @@ class LightLinks:
         """Return the linking of what an object brings, itself or its instances; None where it is not linked."""
         return self._by_uid.get(owner.original.session_uid) if self._by_uid else None
 
-    def tell(self, report: Report) -> None:
-        """Warn where there are more collections or sets than lights can tell apart."""
+    def warn(self, report: Report) -> None:
+        """Warn where there are more collections or sets than lights can distinguish."""
         if self.are_too_many:
             report.warn(
                 f"Light Linking: more than {LIGHT_SETS - 1} sets of objects are linked, and those beyond count as not "

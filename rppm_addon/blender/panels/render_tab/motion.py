@@ -3,7 +3,7 @@
 
 import bpy
 
-from ...export.instances.object_pass import SURFACE_TYPES
+from ...export.instances.instance_reader import SURFACE_TYPES
 from ..base import RppmPanel
 
 _SHAPES = (

@@ -5,7 +5,7 @@ import bpy
 from bl_ui import properties_render
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
-from ...export.instances.object_pass import SURFACE_TYPES
+from ...export.instances.instance_reader import SURFACE_TYPES
 from ..base import RppmPanel
 
 

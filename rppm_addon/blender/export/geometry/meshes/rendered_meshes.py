@@ -13,7 +13,7 @@ def is_made_anew(data: object) -> bool:
 
 
 def has_no_faces(mesh: bpy.types.Mesh) -> bool:
-    """True where an evaluated mesh has nothing to be rendered, as far as it tells: in Edit Mode it may count none."""
+    """True where an evaluated mesh is known to have no faces; in Edit Mode it may count none and have some."""
     return len(mesh.polygons) == 0 and not mesh.is_editmode
 
 

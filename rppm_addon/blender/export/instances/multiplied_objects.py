@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that others multiply, as collections, particles, faces and geometry nodes do."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+
+from ..camera.culling import Selection
+from .converted_curves import ConvertedCurves
+from .instance_description import InstanceDescription, Instancer
+from .instance_reader import CONVERTED_TYPES, InstanceReader
+from .particles import ParticleTable
+from .placements import Identity, Placements, identity_of
+
+
+@dataclass(slots=True)
+class _Prototype:
+    """An object and a mesh that others multiply. Its description is read with its first instance."""
+
+    uid: int
+    """session_uid of the object."""
+    is_described: bool = False
+    description: InstanceDescription | None = None
+    """Description of the object by itself; None where nothing of it is rendered."""
+    reads_instancer: bool = False
+    """Whether its materials read attributes that instances may have of their own."""
+    curve: int = 0
+    """Address of the original object if the mesh is that of a curve or the like, or else 0."""
+    instancer: Instancer | None = None
+    """Instancer of the previous instance."""
+    multiplied: InstanceDescription | None = None
+    """Description of what that instancer multiplies."""
+
+
+class MultipliedObjects:
+    """Places instances of objects that others multiply; the instances of a mesh share one description."""
+
+    def __init__(
+        self, reader: InstanceReader, placements: Placements, curves: ConvertedCurves, particles: ParticleTable
+    ) -> None:
+        self._reader = reader
+        self._placements = placements
+        self._curves = curves
+        self._particles = particles
+        self._instancers: dict[int, Instancer | None] = {}
+        """Instancers by their addresses; None where the viewport does not show them."""
+        self._prototypes: dict[tuple[int, int], _Prototype] = {}
+        """Prototypes by the addresses of the object and its mesh."""
+
+    def export(
+        self,
+        entry: bpy.types.DepsgraphObjectInstance,
+        source: bpy.types.Object,
+        matrix: np.ndarray,
+        selection: Selection,
+    ) -> None:
+        """Place the object of an entry of a depsgraph at a matrix (4, 4). Raises Unfinished when the slice is over."""
+        parent, data = entry.parent, source.data
+        address = parent.as_pointer()
+        if address not in self._instancers:
+            self._instancers[address] = self._read_instancer(parent, selection)
+        instancer = self._instancers[address]
+        key = entry.instance_object.as_pointer(), 0 if data is None else data.as_pointer()
+        prototype = self._prototypes.get(key)
+        if prototype is None:
+            prototype = self._prototypes[key] = self._begin_prototype(source)
+        is_light = source.type == "LIGHT"
+        if instancer is None or not entry.show_self or not (instancer.visibility or is_light):
+            return
+        if selection.culling.leaves_out(source, matrix):
+            return
+        identity = identity_of(entry, source.original, parent.original) if self._placements.identify else ()
+        if is_light:
+            light = self._reader.light(source, matrix, instancer)
+            if light is not None:
+                self._placements.add_light(light, prototype.uid, identity)
+        elif source.type == "MESH":
+            self._place_mesh(prototype, entry, source, matrix, instancer, identity)
+        else:
+            self._place_other(entry, source, matrix, instancer, identity)
+
+    def _read_instancer(self, parent: bpy.types.Object, selection: Selection) -> Instancer | None:
+        original = parent.original
+        uid = original.session_uid
+        self._placements.mark_multiple(uid)
+        self._reader.faceless.brings_others(uid)
+        return self._reader.instancer(parent, uid) if selection.shows(original) else None
+
+    def _begin_prototype(self, source: bpy.types.Object) -> _Prototype:
+        uid = source.original.session_uid
+        self._placements.mark_multiple(uid)
+        self._reader.faceless.is_multiplied(uid)
+        return _Prototype(uid)
+
+    def _place_mesh(
+        self,
+        prototype: _Prototype,
+        entry: bpy.types.DepsgraphObjectInstance,
+        source: bpy.types.Object,
+        matrix: np.ndarray,
+        instancer: Instancer,
+        identity: Identity,
+    ) -> None:
+        reader = self._reader
+        if not prototype.is_described:
+            description = prototype.description = reader.describe(source, entry)
+            if description is not None:
+                prototype.reads_instancer = reader.reads_instancer(description.materials)
+                original = source.original
+                prototype.curve = original.as_pointer() if original.type in CONVERTED_TYPES else 0
+            prototype.is_described = True
+        if prototype.description is None:
+            return
+        if prototype.instancer is not instancer:
+            reader.add_owner(prototype.description, instancer)
+            prototype.instancer, prototype.multiplied = instancer, prototype.description.multiplied_by(instancer)
+        description = prototype.multiplied
+        if prototype.curve:
+            self._curves.add_mesh(prototype.curve, matrix)
+        instance = description.place(
+            matrix,
+            random_of(entry),
+            self._particles.of(entry) if instancer.has_particles else None,
+            reader.attribute_values(source, description.materials, entry) if prototype.reads_instancer else None,
+        )
+        if prototype.reads_instancer:
+            reader.missing.note(instance)
+        self._placements.add(instance, matrix, 0, identity)
+
+    def _place_other(
+        self,
+        entry: bpy.types.DepsgraphObjectInstance,
+        source: bpy.types.Object,
+        matrix: np.ndarray,
+        instancer: Instancer,
+        identity: Identity,
+    ) -> None:
+        """Place what is no mesh yet, which each instance has of its own."""
+        description = self._reader.describe(source, entry)
+        if description is None or not description.visibility & instancer.visibility:
+            return
+        description = description.multiplied_by(instancer)
+        random, particle = random_of(entry), self._particles.of(entry)
+        if source.type in CONVERTED_TYPES:
+            self._curves.add(source, description, matrix, identity, random, particle)
+            return
+        original = source.original
+        if original.type in CONVERTED_TYPES:
+            self._curves.add_mesh(original.as_pointer(), matrix)
+        self._placements.add(description.place(matrix, random, particle), matrix, 0, identity)
+
+
+def random_of(entry: bpy.types.DepsgraphObjectInstance) -> float:
+    """The random number of an instance that an object multiplies, 0 to 1."""
+    return (entry.random_id & 0xFFFFFFFF) / 0xFFFFFFFF
