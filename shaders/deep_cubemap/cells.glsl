@@ -39,7 +39,7 @@ CubemapCell cubemap_cell(uint index) { return cubemap_cells[index]; }
 #endif
 
 #include <CellKinds>
-const uint MOST_LISTED = 6u;
+const uint MAX_LISTED = 6u;
 
 uint content_kind(uint content) { return content >> 30; }
 uint content_start(uint content) { return (content & 0x3fffffffu) >> 4; }

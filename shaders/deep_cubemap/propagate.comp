@@ -51,7 +51,7 @@ void main() {
     } else {
         uint number = binned_cell_number(cell.content);
         if (number < deep_cubemap.binned_cell_capacity) atomicAdd(binned_cells[number].slices, uint(bitCount(slices)));
-        uint place = atomicAdd(deep_cubemap.handed_binned_count, 1u);
+        uint place = atomicAdd(deep_cubemap.propagated_binned_count, 1u);
         if (place < deep_cubemap.binned_fragment_capacity) {
             binned_fragments[place] = BinnedFragment(fragment.cell, fragment.triangle, quantized_depths);
         }
