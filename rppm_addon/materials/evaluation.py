@@ -2,15 +2,15 @@
 """Emission of node graphs that belong to no surface: worlds, lights and volumes."""
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import moderngl
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, StorageBuffer
 from ..gl.constants import Constants
 from ..gl.context import Context
-from ..gl.programs import ProgramLibrary
+from ..gl.programs import Bindable, ProgramLibrary
 from ..gl.records import Record
 from ..scene.scene import Scene
 
@@ -101,7 +101,7 @@ class GraphEvaluator(BufferSet):
         self,
         text: str,
         first_constant: int,
-        buffers: dict[str, moderngl.Buffer],
+        buffers: Mapping[str, Bindable],
         width: int,
         height: int,
         from_camera: bool,

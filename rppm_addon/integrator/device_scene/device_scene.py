@@ -86,7 +86,7 @@ class DeviceScene:
         """Storage blocks and textures of the scene, each declared by its owner."""
         return {
             **self.geometry.blocks,
-            **self.materials.buffers,
+            **self.materials.blocks,
             **self.resolve.blocks,
             **self.lights.blocks,
             **self.acceleration.structure.traversal_buffers,

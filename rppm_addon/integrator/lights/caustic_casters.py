@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ...materials.compiler import LUMINANCE
+from ...materials.graph_constants import LUMINANCE
 from ...materials.nodes import KINDS
 from ...scene.materials import Material
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode

@@ -112,7 +112,7 @@ class DisplacedVertices(BufferSet):
         self._vertices.upload(records)
         self._offsets.require_items(len(records))
         buffers = {
-            **materials.buffers,
+            **materials.blocks,
             **self._surface_attributes.blocks,
             "Triangles": self._geometry.triangles.buffer,
             "Attributes": self._geometry.attributes.buffer,

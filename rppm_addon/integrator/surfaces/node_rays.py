@@ -18,7 +18,7 @@ from ...gl.context import Context
 from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
-from ...materials.compiler import MOST_NODE_RAYS, NodeRayCounts
+from ...materials.compiled_graph import MAX_NODE_RAYS, NodeRayCounts
 from ..acceleration.acceleration_structure import AccelerationStructure
 
 Record(
@@ -63,7 +63,7 @@ Constants(
     QUERY_LEVEL=0xFFF,
     QUERY_LEVEL_SHIFT=4,
     QUERY_SAMPLES_SHIFT=16,
-    MOST_NODE_RAYS=MOST_NODE_RAYS,
+    MAX_NODE_RAYS=MAX_NODE_RAYS,
 )
 _SAMPLES_AT_ONCE = 8
 """llvmpipe ends all loops of a thread after 65535 rounds in all."""

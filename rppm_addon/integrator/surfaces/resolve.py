@@ -14,7 +14,7 @@ from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
 from ...gl.storage_blocks import StorageBlock
-from ...materials.compiler import NEUTRAL_TEXT, NodeRayCounts
+from ...materials.compiled_graph import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.scene import Scene
 from ..acceleration.acceleration_structure import AccelerationStructure
@@ -136,7 +136,7 @@ class Resolve(BufferSet):
         for text in materials.programs:
             self._library.expect(_STAGE, _inserts(text))
         self._programs = [self._program(text, scene, materials) for text in materials.programs]
-        self._ray_counts = [materials.rays[text] for text in materials.programs]
+        self._ray_counts = [materials.programs[text].rays for text in materials.programs]
         self._ray_stride = max((counts.places for counts in self._ray_counts), default=0)
         self._casts_rays = any(counts.casts for counts in self._ray_counts)
         self._traversal = None
@@ -144,7 +144,7 @@ class Resolve(BufferSet):
         self._buffers = {
             **geometry.blocks,
             **self._surface_attributes.blocks,
-            **materials.buffers,
+            **materials.blocks,
         }
 
     def set_accelerator(self, traversal: AccelerationStructure) -> None:
@@ -183,7 +183,7 @@ class Resolve(BufferSet):
         try:
             return self._library.compute(_STAGE, inserts=_inserts(text))
         except CompileError as error:
-            for name in materials.users[text]:
+            for name in materials.programs[text].names:
                 reason = first_line(error)
                 scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is gray')
             return self._library.compute(_STAGE, inserts=_inserts(NEUTRAL_TEXT))

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from ...gl.programs import ProgramLibrary
 from ...integrator.surfaces import displaced_vertices, resolve
-from ...materials.compiler import NEUTRAL_TEXT, GraphError, compile_displacement, compile_graph
+from ...materials.compiled_graph import NEUTRAL_TEXT, GraphError
+from ...materials.compiler import compile_displacement, compile_graph
 from ...materials.tables import MaterialTables, default_material
 from ...scene.materials import Material
 from ...scene.scene import Scene
