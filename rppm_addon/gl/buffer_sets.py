@@ -19,7 +19,8 @@ import moderngl
 from ..scene.errors import DeviceError
 from .buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
 from .context import Context
-from .programs import Bindable, ProgramLibrary
+from .program import Bindable
+from .programs import ProgramLibrary
 from .records import Record, stride
 
 Count = Callable[[Any], int]

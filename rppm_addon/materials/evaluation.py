@@ -10,7 +10,8 @@ import numpy as np
 from ..gl.buffer_sets import BufferSet, StorageBuffer
 from ..gl.constants import Constants
 from ..gl.context import Context
-from ..gl.programs import Bindable, ProgramLibrary
+from ..gl.program import Bindable
+from ..gl.programs import ProgramLibrary
 from ..gl.records import Record
 from ..scene.scene import Scene
 

@@ -118,10 +118,10 @@ class MaterialTables(BufferSet):
         self.attribute_names = list(layout.attributes)
         self._data.upload(layout.data())
         self._upload_images(layout.images())
-        self._number_media(records, graphs.interiors)
+        self._number_media(scene, records, graphs.interiors)
         self._materials.upload(records)
 
-    def _number_media(self, records: np.ndarray, interiors: list[Interior]) -> None:
+    def _number_media(self, scene: Scene, records: np.ndarray, interiors: list[Interior]) -> None:
         """Enter what the materials' interiors are made of into their records."""
         coefficients = np.zeros((len(records), 2, 3), np.float32)
         for values, interior in zip(coefficients, interiors, strict=True):
@@ -130,7 +130,7 @@ class MaterialTables(BufferSet):
                     value[:] = np.maximum(self.evaluate(graph)[0, 0], 0.0)
         filled = np.flatnonzero(coefficients.any(axis=(1, 2)))
         if len(filled) > MAX_MEDIA:
-            self._scene.warn(f"{len(filled)} materials have volumes; those of the first {MAX_MEDIA} are rendered")
+            scene.warn(f"{len(filled)} materials have volumes; those of the first {MAX_MEDIA} are rendered")
             filled = filled[:MAX_MEDIA]
         records["medium"][filled] = 1 + np.arange(len(filled))
         records["medium_bits"] = max(len(filled).bit_length(), 1)
@@ -169,13 +169,14 @@ class MaterialTables(BufferSet):
         ray_length: what Light Path tells, meters; light_surface: whose nodes they are, with a map of another shape.
         """
         entry, first = self._unattached[id(graph)]
-        text = entry.compiled.text
+        text, scene = entry.compiled.text, self._scene
+        assert scene is not None  # which has the graph
         try:
             return self._evaluator.run(
-                text, first, self.blocks, width, height, from_camera, ray_length, self._scene, light_surface
+                text, first, self.blocks, width, height, from_camera, ray_length, scene, light_surface
             )
         except CompileError as error:
-            self._scene.warn(f"{entry.owner}: the driver does not compile its nodes ({first_line(error)}); {NO_EFFECT}")
+            scene.warn(f"{entry.owner}: the driver does not compile its nodes ({first_line(error)}); {NO_EFFECT}")
             return np.zeros((height, width, 3), np.float32)
 
 

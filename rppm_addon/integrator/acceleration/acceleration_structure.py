@@ -7,7 +7,8 @@ import moderngl
 
 from ...gl.buffer_sets import BufferSet
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
 from ..common.records.triangles import TRIANGLE_VERTICES  # noqa: F401  likewise

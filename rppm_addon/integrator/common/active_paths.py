@@ -9,7 +9,8 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Count, Declared
 from ...gl.buffers import SMALLEST, GrowingBuffer, refuse_large_block
 from ...gl.context import Context
-from ...gl.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram, ProgramLibrary
+from ...gl.program import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 

@@ -10,7 +10,8 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers import GrowingBuffer
 from ...gl.context import TEXEL_SIZE, Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...scene.errors import DeviceError, DeviceLostError
 from ..common.require import require
 from .clusters import Clusters

@@ -12,7 +12,8 @@ import moderngl
 import numpy as np
 
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...gl.timers import StageTimers

@@ -9,7 +9,8 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
+from ...gl.program import Bindable, DrawProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
 from ..common.band import MOST_RASTER_PIXELS

@@ -13,7 +13,8 @@ from ...gl.bindings import ITERATION
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.active_paths import ActivePaths
 from ..common.stage_sizes import StageSizes, photon_slots

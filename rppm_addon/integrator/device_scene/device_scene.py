@@ -9,7 +9,8 @@ import numpy as np
 
 from ...gl.bindings import ITERATION
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh

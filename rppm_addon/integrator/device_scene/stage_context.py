@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...gl.programs import Bindable
+from ...gl.program import Bindable
 from ...gl.timers import StageTimers
 from ...materials.tables import MaterialTables
 from ...scene.scene import Scene

@@ -10,7 +10,8 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES

@@ -9,7 +9,8 @@ import numpy as np
 from ...gl.buffer_sets import Part, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.passes import FILM_PASSES, SCATTERED_LIGHT, SHADOW_CATCHER, VECTOR, Accumulation

@@ -20,7 +20,8 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import Bindable, DrawProgram, ProgramLibrary
+from ...gl.program import Bindable, DrawProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ..common.active_paths import ActivePaths

@@ -7,7 +7,8 @@ none add up to it.
 
 from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.program import ComputeProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight as DirectLightMode

@@ -5,7 +5,8 @@ import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.scene import Scene

@@ -3,7 +3,8 @@
 
 from collections.abc import Mapping
 
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ..common.active_paths import ActivePaths
 from ..device_scene.stage_context import StageContext

@@ -5,7 +5,8 @@ import numpy as np
 
 from ...gl.buffer_sets import Part, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import GROUP_SIZE, ProgramLibrary
+from ...gl.program import GROUP_SIZE
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...scene.settings import DirectLight

@@ -5,7 +5,8 @@ from collections.abc import Iterable
 
 from ...gl.buffer_sets import BufferSet, Part, sum_by_name
 from ...gl.context import Context
-from ...gl.programs import Bindable, ProgramLibrary
+from ...gl.program import Bindable
+from ...gl.programs import ProgramLibrary
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits
 from ..common.band import Band

@@ -7,7 +7,8 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context import Context
-from ...gl.programs import ComputeProgram, ProgramLibrary
+from ...gl.program import ComputeProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
 from ...materials.tables import MaterialTables, first_line

@@ -15,7 +15,8 @@ import moderngl
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
+from ...gl.program import Bindable, ComputeProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...materials.compiled_graph import MAX_NODE_RAYS, NodeRayCounts

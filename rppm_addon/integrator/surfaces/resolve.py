@@ -10,7 +10,8 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
-from ...gl.programs import Bindable, ComputeProgram, ProgramLibrary
+from ...gl.program import Bindable, ComputeProgram
+from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.sources import CompileError
 from ...gl.storage_blocks import StorageBlock

@@ -6,7 +6,9 @@ import pytest
 
 from rppm_addon.gl import sources
 from rppm_addon.gl.buffers import GrowingBuffer
-from rppm_addon.gl.programs import ComputeProgram, ProgramLibrary, ProgramMaker
+from rppm_addon.gl.program import ComputeProgram
+from rppm_addon.gl.program_maker import ProgramMaker
+from rppm_addon.gl.programs import ProgramLibrary
 from rppm_addon.gl.records import Record
 from rppm_addon.gl.sources import expand
 from rppm_addon.gl.storage_blocks import StorageBlock
