@@ -41,7 +41,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.scatter(context, band, segment)
             listeners.paths_scattered(events, segment)
             stages.coverage.probe(context, importons, band, segment)
-            raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
+            raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_on else None
             targets = importons.splat_targets(context, segment, raster)
             estimator.splat(targets, context.timers)  # Direct-, IndirectSplatting
             yield

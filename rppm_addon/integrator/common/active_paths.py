@@ -166,6 +166,10 @@ class PathList(Declared[ActivePaths]):
             paths.require(self._count(sizes), self._to_keep)
         return paths
 
+    def make_empty(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> ActivePaths:
+        """Declared.make_empty."""
+        return ActivePaths(context, library, self._name, self._remedy or remedy)
+
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""
         lists = 2 if self._to_keep else 1

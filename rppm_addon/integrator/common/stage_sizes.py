@@ -137,20 +137,10 @@ def grouped_pixels(sizes: StageSizes) -> int:
     return band_pixels(sizes) if sizes.light_groups else 0
 
 
-def grouped_photons(sizes: StageSizes) -> int:
-    """Return the largest number of photons of an iteration where they store their lights' groups; else 0."""
-    return sizes.photons if sizes.light_groups else 0
-
-
-def linked_photons(sizes: StageSizes) -> int:
-    """Return the largest number of photons of an iteration where they store what their lights shine on; else 0."""
-    return sizes.photons if sizes.links_lights else 0
-
-
 def subsurface_walks(sizes: StageSizes) -> int:
-    """Return the largest number of subsurface walks, one for each camera path of a band or each photon of an iteration,
-    where light may go below surfaces; else 0."""
-    return max(band_pixels(sizes), sizes.photons) if sizes.has_subsurface else 0
+    """Return the largest number of subsurface walks, one for each camera path of a band or each photon of an
+    iteration."""
+    return max(band_pixels(sizes), sizes.photons)
 
 
 def exiting_pixels(sizes: StageSizes) -> int:

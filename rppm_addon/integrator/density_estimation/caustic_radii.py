@@ -11,16 +11,14 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.context import Context
+from ...gl.buffer_sets import ComputeShader
 from ...gl.program import Bindable
-from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...gl.storage_blocks import StorageBlock
 from ...gl.timers import StageTimers
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.stage import Stage
-from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
 
@@ -40,10 +38,7 @@ class CausticRadii(Stage):
     memory_group = "passes"
     remedy = "lower the resolution"
     _factors = FilmBuffer("radius factors", "float")
-
-    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
-        super().__init__(context, library, sizes)
-        self._program = library.compute("caustic_radii/narrow.comp")
+    _program = ComputeShader("caustic_radii/narrow.comp")
 
     def factors(self, band: Band) -> moderngl.Buffer:
         """(pixels,) float32 of a band of the film."""

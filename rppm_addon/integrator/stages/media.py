@@ -34,7 +34,7 @@ _MOST_BOXES = 32
 class Media(Stage):
     """Paths begin in the media that surround the camera or their light (shaders/media/crossings.glsl).
 
-    Where no material has a volume there are neither programs nor buffers, and nothing is done.
+    Their programs are compiled when there is a box, as they depend on the acceleration structure.
     """
 
     memory_group = "media"
@@ -45,23 +45,28 @@ class Media(Stage):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._library = library
-        self._has_media, self._has_texels = sizes.has_media, sizes.has_texels
+        self._has_texels = sizes.has_texels
         self._scene: Scene | None = None
         self._box_count = 0
 
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where materials have a volume."""
+        return sizes.has_media
+
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
-        if self._is_used(context, iteration):
+        if self._find_media(context, iteration):
             self._enter(context, photons.active, photons.blocks, "media/enter_photons.comp")
 
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
-        if self._is_used(context, iteration):
+        if self._find_media(context, iteration):
             self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")
 
-    def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
+    def _find_media(self, context: StageContext, iteration: Iteration) -> bool:
         """Find where media are, and what is in them, for a new scene; true where there are any."""
-        if not self._has_media:
+        if not self.is_on:
             return False
         if self._scene is not context.scene or iteration.number == 1:
             self._scene = context.scene

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffer_sets import ComputeShader, StorageBuffer
 from ...gl.constants import Constants
 from ...gl.context import Context
 from ...gl.programs import ProgramLibrary
@@ -63,33 +63,33 @@ def count_in_half(iterations: int) -> int:
     return count
 
 
-def _half_values(sizes: StageSizes) -> int:
-    return 3 if sizes.measures_noise else 0
-
-
 def _block_count(sizes: StageSizes) -> int:
-    return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK) if sizes.measures_noise else 0
+    return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK)
 
 
 class NoiseEstimate(Listener):
-    """The mean of half of the iterations, 12 bytes a pixel; nothing where the picture does not end with its noise."""
+    """The mean of half of the iterations, 12 bytes a pixel."""
 
     memory_group = "passes"
     remedy = "lower the resolution"
-    _half = FilmBuffer("half of the film", "float", _half_values, together=True)
+    _half = FilmBuffer("half of the film", "float", 3, together=True)
     _noises = StorageBuffer("noise of blocks", "float", _block_count, block="Noises")
+    _add = ComputeShader("noise_estimate/add.comp")
+    _measure = ComputeShader("noise_estimate/measure.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self.is_on = sizes.measures_noise
-        self._add = library.compute("noise_estimate/add.comp") if self.is_on else None
-        self._measure = library.compute("noise_estimate/measure.comp") if self.is_on else None
         self._width, self._columns = sizes.width, math.ceil(sizes.width / BLOCK)
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where the picture ends with its noise."""
+        return sizes.measures_noise
 
     def band_ended(self, events: BandEvents) -> None:
         """Listener.band_ended: add the band's estimate, as Film does, of an iteration that belongs to the half."""
         iteration, band, sums = events.iteration, events.band, events.sums
-        if self._add is None or not is_in_half(iteration.number):
+        if not is_in_half(iteration.number):
             return
         with events.context.timers.stage("noise"):
             self._add.run(
@@ -106,8 +106,7 @@ class NoiseEstimate(Listener):
     def measure(self, context: StageContext, film: FilmParts, exposure: float, skipped: int, iteration: int) -> float:
         """The noise of the noisiest block of a film, (pixels, 4) float32, of the iterations after ``skipped`` up to
         ``iteration``; infinite while one of the halves is empty. Waits for the device."""
-        program = self._measure
-        if program is None:
+        if not self.is_on:
             raise ValueError("nothing is known of the noise: the stage is off")
         here = count_in_half(iteration) - count_in_half(skipped)
         rest = iteration - skipped - here
@@ -117,7 +116,7 @@ class NoiseEstimate(Listener):
             noise = 0.0
             for part, half, rows in zip(film, self._half, film.rows, strict=True):
                 blocks = self._columns * math.ceil(rows / BLOCK)
-                program.run(
+                self._measure.run(
                     blocks,
                     {**self.blocks, "Film": part.buffer, "HalfMeans": half.buffer},
                     {

@@ -78,10 +78,9 @@ class StageSet(BufferSet):
                 _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)
             )
         self.coverage = Coverage(library)
-        self.listeners = Listeners(
-            [self.photon_noise, self.film, self.noise_estimate, self.light_passes, self.light_groups]
-        )
-        """Told of what happens in a band, in this order."""
+        listeners = self.photon_noise, self.film, self.noise_estimate, self.light_passes, self.light_groups
+        self.listeners = Listeners(stage for stage in listeners if stage.is_on)
+        """Called for the events of a band, in this order."""
         self.bands = self._sizes.bands
 
     def fits(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> bool:
@@ -108,7 +107,7 @@ class StageSet(BufferSet):
         }
 
     def events_of(self, context: StageContext, iteration: Iteration, band: Band, radii: Radii) -> BandEvents:
-        """Return the events of a band, of which listeners are told."""
+        """Return the events of a band, with which listeners are called."""
         sums = self.density_estimator.sums
         return BandEvents(context, iteration, band, radii, self.importons, self.direct_light, self.final_gather, sums)
 
