@@ -72,7 +72,7 @@ class StageSet(BufferSet):
         """Raises DeviceError when the device has no room for them."""
         self._sizes = StageSizes.of(scene, demands)
         self.refuse_large(context, self._sizes)
-        with library.defining(self._sizes.defines):
+        with library.defining(self._sizes.features.defines):
             super().__init__(context, library, self._sizes)
             self.camera_hits: CameraHits = self.own(
                 _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)

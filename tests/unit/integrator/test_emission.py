@@ -11,7 +11,7 @@ from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.lights.environment import distribution_of
 from rppm_addon.integrator.lights.light_entry import spot_share, spread_constants, spread_share
-from rppm_addon.integrator.lights.lights import share_out
+from rppm_addon.integrator.lights.photon_allocation import apportion
 from rppm_addon.materials.emitted import Emits, emits
 
 
@@ -19,7 +19,7 @@ from rppm_addon.materials.emitted import Emits, emits
 @given(st.lists(st.floats(0, 1e6), min_size=1, max_size=20), st.integers(1, 100000))
 def test_shares_add_up(weights, photons):
     weights = np.array(weights)
-    counts = share_out(weights, photons)
+    counts = apportion(weights, photons)
     assert (counts >= 0).all()
     if weights.sum() <= 0:
         assert counts.sum() == 0
