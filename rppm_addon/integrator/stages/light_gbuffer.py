@@ -18,7 +18,7 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
 from ...gl.context import Context
 from ...gl.program import Bindable, DrawProgram
 from ...gl.programs import ProgramLibrary
@@ -134,21 +134,21 @@ class LightGBuffer(BufferSet):
     """The views of a scene's point lights, spots and suns. Buffers are kept between scenes and grow with need."""
 
     remedy = "trace the first photon hits"
-    _views = StorageBuffer("light views", LIGHT_VIEW)
-    _ranges = StorageBuffer("views by light", "uvec2")
-    _texels = StorageBuffer("light G-buffer", LIGHT_TEXEL)
-    _triangles = StorageBuffer("triangles of the light G-buffer", "uint")
-    _jobs = StorageBuffer("light G-buffer jobs", "uvec4", header=_COUNTS)
+    _views = StorageBuffer("light views", LIGHT_VIEW, block="LightViews")
+    _ranges = StorageBuffer("views by light", "uvec2", block="LightViewRanges")
+    _texels = StorageBuffer("light G-buffer", LIGHT_TEXEL, block="LightTexels")
+    _triangles = StorageBuffer("triangles of the light G-buffer", "uint", block="TexelTriangles")
+    _jobs = StorageBuffer("light G-buffer jobs", "uvec4", header=_COUNTS, block="LightJobs")
+    _list_jobs = ComputeShader("light_gbuffer/list_jobs.comp")
+    _allocate = ComputeShader("light_gbuffer/allocate.comp")
+    _first_hits = ComputeShader("light_gbuffer/first_hits.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
-        self._list_jobs = library.compute("light_gbuffer/list_jobs.comp")
         self._nearest = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/nearest.frag")
         self._count = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/count.frag")
-        self._allocate = library.compute("light_gbuffer/allocate.comp")
         self._list = library.draw("light_gbuffer/jobs.vert", "light_gbuffer/list.frag")
-        self._first_hits = library.compute("light_gbuffer/first_hits.comp")
         self._framebuffer: moderngl.Framebuffer | None = None
         self._parameters: dict[str, int] = {}
         self._side = 0
@@ -188,35 +188,31 @@ class LightGBuffer(BufferSet):
             if self._framebuffer is not None:
                 self.disown(self._framebuffer)
             self._framebuffer = self.own(self._context.moderngl.empty_framebuffer(size))
-        blocks = {
-            "LightViews": self._views.buffer,
-            "LightTexels": self._texels.buffer,
-            "Triangles": geometry.triangles.buffer,
-        }
-        jobs = self._find_jobs(views * geometry.triangle_count, 5 * geometry.triangle_count // 4, blocks)
-        blocks["LightJobs"] = self._jobs.buffer
-        self._draw(self._nearest, jobs, blocks)
-        self._draw(self._count, jobs, blocks)
-        counted = {name: blocks[name] for name in ("LightViews", "LightTexels", "LightJobs")}
-        self._allocate.run(views * self._side**2, counted, self._parameters)
+        jobs = self._find_jobs(views, geometry)
+        self._draw(self._nearest, jobs, geometry)
+        self._draw(self._count, jobs, geometry)
+        self._allocate.run(views * self._side**2, self.blocks, self._parameters)
         self._triangles.require_items(int(self._jobs.read(_COUNTS.dtype, 1)["triangles"][0]))
-        self._draw(self._list, jobs, {**blocks, "TexelTriangles": self._triangles.buffer})
+        self._draw(self._list, jobs, geometry)
 
-    def _find_jobs(self, threads: int, expected: int, blocks: dict[str, moderngl.Buffer]) -> int:
+    def _find_jobs(self, views: int, geometry: Geometry) -> int:
         """List where triangles may be seen; how many such jobs there are."""
-        jobs = expected
+        jobs = 5 * geometry.triangle_count // 4
         while True:
             self._jobs.require_items(jobs)
             capacity = self._jobs.capacity
             self._jobs.write(_COUNTS.zeros(1))
             self._list_jobs.run(
-                threads, {**blocks, "LightJobs": self._jobs.buffer}, self._parameters | {"job_capacity": capacity}
+                views * geometry.triangle_count,
+                {**geometry.blocks, **self.blocks},
+                self._parameters | {"job_capacity": capacity},
             )
             jobs = int(self._jobs.read(_COUNTS.dtype, 1)["jobs"][0])
             if jobs <= capacity:
                 return jobs
 
-    def _draw(self, program: DrawProgram, jobs: int, blocks: dict[str, moderngl.Buffer]) -> None:
+    def _draw(self, program: DrawProgram, jobs: int, geometry: Geometry) -> None:
+        blocks = {**geometry.blocks, **self.blocks}
         program.draw(require(self._framebuffer), 6 * jobs, blocks, self._parameters)
 
     def find(
@@ -234,15 +230,6 @@ class LightGBuffer(BufferSet):
         left.begin(count)
         self._first_hits.run(
             count,
-            {
-                **blocks,
-                "LightViewRanges": self._ranges.buffer,
-                "LightViews": self._views.buffer,
-                "LightTexels": self._texels.buffer,
-                "TexelTriangles": self._triangles.buffer,
-                "Rays": rays,
-                "Hits": hits,
-                "KeptPaths": left.buffer,
-            },
+            {**blocks, **self.blocks, "Rays": rays, "Hits": hits, "KeptPaths": left.buffer},
             {"side": self._side, "count": count},
         )

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer, sum_by_name
 from ...gl.context import Context
+from ...gl.program import Bindable
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record
 from ...scene.scene import Scene
@@ -61,10 +62,10 @@ class SeenPicture(BufferSet):
     """A view's surfaces, and the picture that was shown of it."""
 
     remedy = "make the viewport smaller"
-    camera = StorageBuffer("camera of a viewport", CAMERA_VIEW, 1)
-    picture = StorageBuffer("viewport picture", "vec4", film_pixels)
+    camera = StorageBuffer("camera of a viewport", CAMERA_VIEW, 1, block="Camera")
+    picture = StorageBuffer("viewport picture", "vec4", film_pixels, block="Picture")
     """Scene-linear, exposed, premultiplied alpha."""
-    counts = StorageBuffer("samples of the viewport picture", "float", film_pixels)
+    counts = StorageBuffer("samples of the viewport picture", "float", film_pixels, block="Counts")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -90,6 +91,22 @@ class SeenPicture(BufferSet):
         assert isinstance(sizes, StageSizes)
         texel = sum(components * int(dtype[-1]) for components, dtype in _TEXTURES) + _DEPTH_BYTES
         return super().expected_bytes(sizes) | {_SURFACES: texel * film_pixels(sizes)}
+
+    @property
+    def blocks(self) -> dict[str, Bindable]:
+        """BufferSet.blocks, with the textures of the surfaces, for the picture that is composed."""
+        return {**super().blocks, "surfaces": self.surfaces, "numbers": self.numbers, "looks": self.looks}
+
+    @property
+    def last_blocks(self) -> dict[str, Bindable]:
+        """Storage blocks and textures for the last picture, which is moved into another view."""
+        return {
+            "last_surfaces": self.surfaces,
+            "last_numbers": self.numbers,
+            "LastCamera": self.camera.buffer,
+            "LastPicture": self.picture.buffer,
+            "LastCounts": self.counts.buffer,
+        }
 
     def look(self, first_look: FirstLook, scene: Scene) -> None:
         """Have the surfaces of a scene's view, of this size. Raises SceneError for a camera that sees nothing."""
@@ -199,20 +216,7 @@ class Reprojection:
         last = last or seen  # something has to be bound
         self._compose.run(
             seen.size[0] * seen.size[1],
-            {
-                "surfaces": seen.surfaces,
-                "numbers": seen.numbers,
-                "looks": seen.looks,
-                "last_surfaces": last.surfaces,
-                "last_numbers": last.numbers,
-                "Camera": seen.camera.buffer,
-                "LastCamera": last.camera.buffer,
-                "LastPicture": last.picture.buffer,
-                "LastCounts": last.counts.buffer,
-                "NewPicture": last.picture.buffer if new is None else new.buffer,
-                "Picture": seen.picture.buffer,
-                "Counts": seen.counts.buffer,
-            },
+            {**seen.blocks, **last.last_blocks, "NewPicture": last.picture.buffer if new is None else new.buffer},
             {
                 "new_width": 0 if new is None else new.width,
                 "new_height": 0 if new is None else new.height,
