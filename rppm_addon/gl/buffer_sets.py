@@ -176,7 +176,7 @@ class ComputeShader(Declared[ComputeProgram]):
 
 
 class BufferSet:
-    """Owner of what it declares and of what else it is told to own."""
+    """Owner of what it declares and of what else is given to it."""
 
     remedy: ClassVar[str] = REMEDY
     """Advice to the user where the device has no room for a buffer."""

@@ -18,7 +18,7 @@ from .pacing import Pace, Pacing
 from .program_maker import ProgramMaker
 from .records import Record
 from .sources import Source
-from .texel_buffers import IMAGES_FOR_LARGE, MOST_ADDED, TexelBuffers
+from .texel_buffers import IMAGES_FOR_LARGE, MAX_ADDED, TexelBuffers
 
 _EMPTY_COMPUTE = "#version 430 core\nlayout(local_size_x = 1) in;\nvoid main() {}\n"
 _EMPTY_VERTEX = "#version 430 core\nvoid main() { gl_Position = vec4(0.0); }\n"
@@ -84,10 +84,10 @@ class Program:
 
     def too_large(self, buffers: Mapping[str, Any]) -> frozenset[str]:
         """Names of blocks whose buffers are larger than the device allows where the program has them."""
-        block, texels = self.context.storage_block_limit, self.context.most_texels
+        block, texels = self.context.storage_block_limit, self.context.max_texels
         most = dict.fromkeys(self._bindings, block) | {name: texels * size for name, size in self._texel_bytes.items()}
         return frozenset(
-            name for name, limit in most.items() if name in buffers and buffers[name].size > limit + MOST_ADDED
+            name for name, limit in most.items() if name in buffers and buffers[name].size > limit + MAX_ADDED
         )
 
     def _bind(self, buffers: Mapping[str, Any], parameters: Mapping | None) -> None:

@@ -18,7 +18,7 @@ from ..scene.errors import DeviceError
 from ..scene.meshes import Instance, RayVisibility
 from ..scene.scene import Scene
 from ..scene.sharing import same_members
-from .common.band import MOST_RASTER_PIXELS
+from .common.band import MAX_RASTER_PIXELS
 from .common.camera_view import CAMERA_VIEW, camera_view
 from .surfaces.geometry import Geometry
 
@@ -85,7 +85,7 @@ class FirstLook(BufferSet):
         SceneError for a camera that sees nothing.
         """
         width, height = scene.camera.resolution
-        if max(width, height) > MOST_RASTER_PIXELS:
+        if max(width, height) > MAX_RASTER_PIXELS:
             raise DeviceError(f"{width} x {height} pixels are more than devices draw; make the viewport smaller")
         scene = self.take(scene)
         self._camera.upload(camera_view(scene.camera, 0, height, (0.0, 0.0)))

@@ -166,7 +166,7 @@ class MaterialTables(BufferSet):
         """(height, width, 3) float32 emission of a graph of the scene that belongs to no surface.
 
         Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
-        ray_length: what Light Path tells, meters; light_surface: whose nodes they are, with a map of another shape.
+        ray_length: Ray Length of Light Path, meters; light_surface: whose nodes they are, with a map of another shape.
         """
         entry, first = self._unattached[id(graph)]
         text, scene = entry.compiled.text, self._scene

@@ -34,7 +34,7 @@ uvec2 extent_around(uvec2 one, uvec2 other) {
                  max(one.y & 0xffffu, other.y & 0xffffu) | max(one.y >> 16, other.y >> 16) << 16);
 }
 
-// Once for all faces: what every triangle tells of all of them.
+// Once for all faces: what every triangle adds to all of them.
 void enter_triangles(uint first, uint size) {
     for (uint triangle = first; triangle < first + size; ++triangle) {
         Corners corners = corners_of(triangle);

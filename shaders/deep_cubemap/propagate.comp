@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hands the fragments of a level on, a thread each: to the cell's list, to those that are binned later,
+// Propagates the fragments of a level, a thread each: to the cell's list, to those that are binned later,
 // or to the tile that divides the cell. A triangle that lies in one cell of the tile needs no test.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD

@@ -14,10 +14,10 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.constants import Constants
 from ...gl.storage_blocks import StorageBlock
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
-from .clustering import MOST_DEPTH, NODE, build_nodes
+from .clustering import MAX_DEPTH, NODE, build_nodes
 
 LEAF = 0x80000000
-Constants("BvhNodes", LEAF=LEAF, MOST_DEPTH=MOST_DEPTH)
+Constants("BvhNodes", LEAF=LEAF, MAX_DEPTH=MAX_DEPTH)
 StorageBlock("BvhNodes", "BvhNode bvh_nodes[];")
 
 _EMPTY_LEAF = np.uint32(LEAF)

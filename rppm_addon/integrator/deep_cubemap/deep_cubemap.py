@@ -194,7 +194,7 @@ class DeepCubemap(AccelerationStructure):
     def traversal_defines(self) -> dict[str, object]:
         """AccelerationStructure.traversal_defines."""
         read = self._buffers.cells.size, self._buffers.entries.size, require(self._buffers.triangles).size
-        fits = max(read) <= TEXEL_SIZE * self._context.most_texels
+        fits = max(read) <= TEXEL_SIZE * self._context.max_texels
         is_asked_for = self._texel_buffers or self._buffers.entries.size > self._context.storage_block_limit
         texel_buffers: dict[str, object] = {TEXEL_BUFFERS: 1} if fits and is_asked_for else {}
         return {**super().traversal_defines, **texel_buffers, **self._clusters.defines}

@@ -25,10 +25,10 @@ from .splat_sums import SplatSums
 StorageBlock("RadiusFactors", "float radius_factors[];")
 
 
-Record("NarrowParameters", count="uint", most_factor="float", expected="float")
+Record("NarrowParameters", count="uint", max_factor="float", expected="float")
 
-_LEAST_FRACTION = 0.25
-"""Least fraction of the first iteration's photons that is assumed: disks of fewer hold too few photons to tell how
+_MIN_FRACTION = 0.25
+"""Least fraction of the first iteration's photons that is assumed: disks of fewer hold too few photons to measure how
 dense they lie."""
 
 
@@ -59,14 +59,14 @@ class CausticRadii(Stage):
         Of fewer photons disks hold fewer: that makes noise, which is weighed (common/photon_counts.py), and no wider
         blur.
         """
-        held = max(fraction, _LEAST_FRACTION)
+        held = max(fraction, _MIN_FRACTION)
         with timers.stage("learning"):
             self._program.run(
                 band.pixel_count,
                 {**blocks, **sums.blocks, "RadiusFactors": self._factors.of(band)},
                 {
                     "count": band.pixel_count,
-                    "most_factor": radii.most_factor,
+                    "max_factor": radii.max_factor,
                     "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 * held / sums.photons_for_one,
                 },
             )

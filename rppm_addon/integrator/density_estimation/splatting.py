@@ -13,7 +13,7 @@ from ...gl.program import Bindable, DrawProgram
 from ...gl.programs import ProgramLibrary
 from ...gl.records import Record, stride
 from ...gl.storage_blocks import StorageBlock
-from ..common.band import MOST_RASTER_PIXELS
+from ..common.band import MAX_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import CameraRaster, SplatTargets, StoredPhotons
@@ -76,7 +76,7 @@ class Splatting(BufferSet):
         self._indirect_program = library.draw("splatting/quads.vert", "splatting/indirect.frag")
         self._core_program = library.compute("splatting/core.comp")
         self._resolution = _resolution(sizes)
-        self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MOST_RASTER_PIXELS), sizes.bands[0].rows)))
+        self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MAX_RASTER_PIXELS), sizes.bands[0].rows)))
         self._cube_size = (3 * self._resolution, 2 * self._resolution)
         self._cube_view = self.own(gl.empty_framebuffer(self._cube_size))
 

@@ -92,7 +92,7 @@ class StoredPhotons:
     groups: moderngl.Buffer
     """PhotonGroups, where there are any."""
     photon_flux: float
-    """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
+    """Mean flux of all lights' photons as they leave, W, which are allocated by power."""
     radii: SplatRadii
     largest_coordinate: float
     """Largest coordinate of any position, by its absolute value, meters."""

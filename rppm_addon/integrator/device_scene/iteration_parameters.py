@@ -41,7 +41,7 @@ ITERATION_PARAMETERS = Record(
 """Members of the uniform block Iteration (shaders/common/iteration.glsl).
 
 ``number``, ``number_in_film``, ``seed`` and ``direct_world_flux`` are those of Iteration. ``photon_flux`` is the mean
-flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
+flux of all photons, W. ``limits_bounces`` is whether any light has bounce limits of its own, ``next_event`` whether
 shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, and what the lights
 and the radii declare.
 """

@@ -52,8 +52,8 @@ LIGHT_PARAMETERS = {
     "world_bounces": "uint",
 }
 """Parameters of every program that includes shaders/lights/lights.glsl. ``gathers_lights``: whether gathering rays
-share lights with shadow rays (shadows_are_of_all); ``world_selection`` is the probability of choosing the world for
-direct light, as MIS weights take it; ``mesh_light`` and ``world_light`` are the numbers of lights;
+find lights that shadow rays find as well (shadows_are_of_all); ``world_selection`` is the probability of choosing the
+world for direct light, as MIS weights take it; ``mesh_light`` and ``world_light`` are the numbers of lights;
 ``environment_irradiance`` what the world may give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights``
 Lights', ``world_visibility`` the rays that see the world, ``world_bounces`` its max_bounces."""
 

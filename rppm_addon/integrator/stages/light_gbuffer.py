@@ -38,11 +38,11 @@ LIGHT_VIEW = Record(
     up="vec3",
     tip_distance="float",
     forward="vec3",
-    least_depth="float",
+    min_depth="float",
 )
 """View of a light through a window whose half extent at depth 1 is ``tangent``. Depths begin at the tip,
-``tip_distance`` before the center; ``margin`` is how far texels are widened; nearer than ``least_depth`` float rounding
-tells nothing of directions. Lengths in meters."""
+``tip_distance`` before the center; ``margin`` is how far texels are widened; nearer than ``min_depth`` float rounding
+leaves no precision to directions. Lengths in meters."""
 
 Record(
     "LightGBufferParameters",
@@ -62,13 +62,13 @@ before the horizon, and where their numbers end in the list of all (where they a
 StorageBlock("TexelTriangles", "uint texel_triangles[];")
 _COUNTS = Record("LightGBufferCounts", jobs="uint", triangles="uint", unused0="uint", unused1="uint")
 
-MOST_LIGHTS = 16
+MAX_LIGHTS = 16
 """Maximum number of lights that have views. The lights with the most photons have them; photons of the others are
 traced."""
 
 _COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
 """Texels along a view's side, and of all views where these allow it."""
-_MOST_TESTS = 1 << 24
+_MAX_TESTS = 1 << 24
 """Views times triangles: beyond this only the first light has views."""
 _PICTURE_SIDE = 4096
 _WIDEST_MARGIN = 1.0 / 128.0
@@ -106,7 +106,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
         # Over the scene's depth rays leave their texel's cone so far.
         slope = sine / max(float(light["cosine_cone"]), 1e-3) + 1.0 / _SUN_DISTANCE
         views["margin"] = scene_radius * (1.02 * slope + _ROUNDING)
-        views["least_depth"] = 0.5 * tip
+        views["min_depth"] = 0.5 * tip
     elif kind in (LightShape.POINT, LightShape.SPOT):
         cone = math.acos(max(-1.0, 1.0 - float(light["spread_scale"]))) if kind == LightShape.SPOT else math.pi
         narrow = cone < _WIDEST_CONE
@@ -117,7 +117,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
         rounding = _ROUNDING * farthest
         views["center"], views["tangent"] = light["position"], tangent
         views["margin"] = 1.01 * math.hypot(1.0, tangent) * float(light["radius"]) + rounding
-        views["least_depth"] = 16.0 * rounding
+        views["min_depth"] = 16.0 * rounding
     else:
         return LIGHT_VIEW.zeros(0)
     views["right"], views["up"], views["forward"] = (np.array(axes) for axes in zip(*looks))
@@ -159,9 +159,9 @@ class LightGBuffer(BufferSet):
         scene_radius: of the sphere that photons from suns come through, meters. Raises DeviceError.
         """
         ranges, found, count = np.zeros((len(lights), 2), np.uint32), [LIGHT_VIEW.zeros(0)], 0
-        for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MOST_LIGHTS]:
+        for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MAX_LIGHTS]:
             views = light_views(lights[index], scene_center, scene_radius)
-            if count and (count + len(views)) * geometry.triangle_count > _MOST_TESTS:
+            if count and (count + len(views)) * geometry.triangle_count > _MAX_TESTS:
                 break
             ranges[index] = count, len(views)
             found.append(views)

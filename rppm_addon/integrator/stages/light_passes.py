@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes that tell apart what makes a picture's light: by what first surfaces make of it, and caustics.
+"""Passes that separate what makes a picture's light: by what first surfaces make of it, and caustics.
 
 Whatever adds to Combined adds a part of the same to these, so that they add up to it. Light that camera paths meet is
 the film's (shaders/film/seen_light.comp).

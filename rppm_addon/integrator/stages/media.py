@@ -27,7 +27,7 @@ StorageBlock("MediaOfSources", "uint media_of_sources[];")
 Record("FindMediaParameters", camera_position="vec3", box_count="uint")
 Record("EnterMediaParameters", camera_position="vec3", box_count="uint", has_camera="uint")
 
-_MOST_BOXES = 32
+_MAX_BOXES = 32
 """Boxes that points are looked for in; what is more lies in the last together."""
 
 
@@ -111,8 +111,8 @@ def _boxes(scene: Scene, materials: frozenset[int]) -> np.ndarray:
         low += list(lows[good])
         high += list(highs[good])
     boxes = np.stack([low, high], axis=1) if low else np.zeros((0, 2, 3))
-    if len(boxes) > _MOST_BOXES:
-        rest = boxes[_MOST_BOXES - 1 :]
+    if len(boxes) > _MAX_BOXES:
+        rest = boxes[_MAX_BOXES - 1 :]
         united = np.stack([rest[:, 0].min(axis=0), rest[:, 1].max(axis=0)])
-        boxes = np.concatenate([boxes[: _MOST_BOXES - 1], united[None]])
+        boxes = np.concatenate([boxes[: _MAX_BOXES - 1], united[None]])
     return boxes.astype(np.float32)

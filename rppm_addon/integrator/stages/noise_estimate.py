@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How noisy the film is, told by half of its iterations.
+"""Noise of the film, estimated from half of its iterations.
 
 The mean of half of the iterations and that of all differ as two independent estimates do, so their distance says how
 far the mean of all is from that of infinitely many. Dammertz et al., A Hierarchical Automatic Stopping Condition for
 Monte Carlo Global Illumination (2009), in the unit of Cycles (kernel/film/adaptive_sampling.h). Where points fill
 their space evenly the mean of all is better than that: measured along edges, by 1.5 at 64 iterations and 2.3 at 512.
-What both halves have alike, the blur of the radius, cannot be told so.
+What both halves have alike, the blur of the radius, cannot be measured so.
 """
 
 import math
@@ -32,7 +32,7 @@ BLOCK = BANDS_TOGETHER
 Constants("NoiseBlocks", NOISE_BLOCK=BLOCK)
 _SHORTEST_RUN, _RUNS_PER_OCTAVE = 16, 4
 LEAST_MEASURED, MEASURED_EVERY = 2 * _SHORTEST_RUN, _SHORTEST_RUN // 2
-"""Iterations of which the noise can be told, and those from one time to the next."""
+"""Iterations of which the noise can be measured, and those from one time to the next."""
 
 
 def _run_length(index: int) -> int:
@@ -43,7 +43,7 @@ def is_in_half(number: int) -> bool:
     """Whether an iteration (from 1) belongs to the half.
 
     Points of iterations fill their space evenly, and so do 2^k of them from a multiple of 2^k on, while those of every
-    other iteration, however chosen, are strewn: of them the halves would tell several times the noise that there is,
+    other iteration, however chosen, are strewn: of them the halves would show several times the noise that there is,
     most of it along edges, as all pixels look through the same subpixel. So runs of iterations belong to the half or do
     not, in the order of Thue and Morse, and are as long as a quarter of the iterations before. Radii shrink: a blur
     that goes away counts as far as it differs from run to run.

@@ -40,7 +40,7 @@ _STARTS = {
     "mesh_vertex": "positions",
     "mesh_uv": "corner_uv",
 }
-"""Members of InstanceEntry that tell where a mesh's part of such an array begins."""
+"""Members of InstanceEntry that are where a mesh's part of such an array begins."""
 _FAR_VERTICES = 128.0
 """Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 _BLOCK = 256

@@ -28,14 +28,14 @@ Record(
     new_height="uint",
     exposure="float",
     new_count="float",
-    most_history="float",
-    most_specular_history="float",
+    max_history="float",
+    max_specular_history="float",
     way_of_origins="vec3",
 )
 
-MOST_HISTORY = 8.0
+MAX_HISTORY = 8.0
 """Samples that the last picture counts at most."""
-_MOST_SPECULAR_HISTORY = 0.5
+_MAX_SPECULAR_HISTORY = 0.5
 """And where surfaces are specular: what these show does not stay in its place as the view moves."""
 HISTORY_ENDS = 32
 """Samples of full resolution after which a picture stands for itself."""
@@ -130,10 +130,10 @@ class SeenPicture(BufferSet):
 
 def same_places(a: Scene, b: Scene) -> bool:
     """Whether nothing has moved and every surface is the same."""
-    return _share(a, b, "meshes", "instances", "materials")
+    return _have_alike(a, b, "meshes", "instances", "materials")
 
 
-def _share(a: Scene, b: Scene, *names: str) -> bool:
+def _have_alike(a: Scene, b: Scene, *names: str) -> bool:
     lists = ((getattr(a, name), getattr(b, name)) for name in names)
     return all(x is y or same_members(x, y) for x, y in lists)
 
@@ -143,7 +143,7 @@ def differ_by_view(a: Scene, b: Scene) -> bool:
     settings = ("film_transparent", "passes", "direct_light", "use_final_gather")
     return (
         same_places(a, b)
-        and _share(a, b, "lights", "images")
+        and _have_alike(a, b, "lights", "images")
         and a.world is b.world
         and a.exposure == b.exposure
         and a.camera.orthographic == b.camera.orthographic
@@ -152,7 +152,7 @@ def differ_by_view(a: Scene, b: Scene) -> bool:
 
 
 def can_move(scene: Scene) -> bool:
-    """Whether a rasterized view tells what the scene's pictures show."""
+    """Whether a rasterized view shows what the scene's pictures show."""
     return is_rasterized(scene.camera) and scene.shutter is None
 
 
@@ -212,7 +212,7 @@ class Reprojection:
     def _run(
         self, seen: SeenPicture, last: SeenPicture | None, scene: Scene, new: NewPicture | None, fade: float
     ) -> None:
-        history = 0.0 if last is None else MOST_HISTORY * fade
+        history = 0.0 if last is None else MAX_HISTORY * fade
         last = last or seen  # something has to be bound
         self._compose.run(
             seen.size[0] * seen.size[1],
@@ -222,8 +222,8 @@ class Reprojection:
                 "new_height": 0 if new is None else new.height,
                 "exposure": scene.exposure,
                 "new_count": 0.0 if new is None else new.samples,
-                "most_history": history,
-                "most_specular_history": min(history, _MOST_SPECULAR_HISTORY),
+                "max_history": history,
+                "max_specular_history": min(history, _MAX_SPECULAR_HISTORY),
                 "way_of_origins": seen.world_offset - last.world_offset,
             },
         )

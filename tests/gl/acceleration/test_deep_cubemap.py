@@ -155,7 +155,7 @@ def test_buffers_too_long_for_texels_are_read_as_storage(context, library, meshe
     with TracedTriangles(context, library, meshes, PLAIN, 256, texel_buffers=True) as scene:
         expected = scene.trace(rays)
         assert "TEXEL_BUFFERS" in scene.structure.traversal_defines
-        monkeypatch.setattr(context, "most_texels", 64)
+        monkeypatch.setattr(context, "max_texels", 64)
         assert "TEXEL_BUFFERS" not in scene.structure.traversal_defines
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
 

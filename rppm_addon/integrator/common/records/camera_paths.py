@@ -9,7 +9,7 @@ from ....gl.storage_blocks import StorageBlock
 
 
 class Scatter(enum.IntEnum):
-    """Kinds of scattering at a surface that Cycles tells apart, in the order of their passes (scene/passes.py)."""
+    """Kinds of scattering at a surface that Cycles distinguishes, in the order of their passes (scene/passes.py)."""
 
     NONE = 0
     DIFFUSE = 1
@@ -45,7 +45,7 @@ class CameraPathFlag(enum.IntFlag):
     SINGULAR = 32
     """The event had a single direction."""
     CAUSTIC = 64
-    """Since GATHERED, something has scattered the path or taken a share of direct light."""
+    """Since GATHERED, something has scattered the path or taken a part of direct light."""
     GATHERED_AGAIN = 128
     """The path has left a second surface that stores photons."""
     DENOISING_DATA_FOUND = 256
@@ -75,7 +75,7 @@ the clip start, ``straight_length`` of those that led straight through surfaces 
 ``primary_radius`` the radius of a pixel's cone at distance 1, or of its beam of parallel rays, from the primary hit on
 that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`` that of the scattered direction in
 1/sr where shadow rays sample the same light, else 0; ``depth`` counts bounces and transparent surfaces (Depths);
-``lit_normal`` and ``lit_from`` tell how these shadow rays chose their light (shaders/importons/scatter_point.glsl)."""
+``lit_normal`` and ``lit_from`` are what these shadow rays chose their light (shaders/importons/scatter_point.glsl)."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Radiance of the pixels of a band, W/(m^2 sr), and alpha."""
