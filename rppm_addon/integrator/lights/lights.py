@@ -89,6 +89,12 @@ class Lights(BufferSet):
         self.target_count = 0
         self.table = LIGHT.zeros(0)
         """LIGHT records, all lights'."""
+        self.has_falloff = False
+        """Whether the light of any falls off otherwise than by the square of the distance."""
+        self.are_cut = False
+        """True where surfaces lie within the radius of any soft light."""
+        self.limits_bounces = False
+        """Whether the light of any is scattered less often than the paths allow."""
         self._portals: Portals | None = None
         self._allocation: PhotonAllocation | None = None
         self._names: list[str] = []
@@ -105,23 +111,6 @@ class Lights(BufferSet):
         """The rays that see the world."""
         self.world_group = NO_LIGHT_GROUP
         """The world's light group by number."""
-
-    @property
-    def has_falloff(self) -> bool:
-        """Whether the light of any falls off otherwise than by the square of the distance."""
-        table = self.table
-        return bool((table["flags"] & LightFlag.SOFT).any() or table["falloff"].any() or table["smoothing"].any())
-
-    @property
-    def are_cut(self) -> bool:
-        """True where surfaces lie within the radius of any soft light."""
-        cut = LightFlag.SOFT | LightFlag.HOLDS_SURFACES
-        return bool(((self.table["flags"] & cut) == cut).any())
-
-    @property
-    def limits_bounces(self) -> bool:
-        """Whether the light of any is scattered less often than the paths allow."""
-        return bool((self.table["max_bounces"] < UNLIMITED_BOUNCES).any())
 
     @property
     def links_lights(self) -> bool:
@@ -221,6 +210,10 @@ class Lights(BufferSet):
         kept = self.table if keep_learned and lights.names == names else None
         self._names, self._powers = lights.names, lights.powers
         self.table, self._max_photons = table, max_photons
+        soft, cut = LightFlag.SOFT, LightFlag.SOFT | LightFlag.HOLDS_SURFACES
+        self.has_falloff = bool((table["flags"] & soft).any() or table["falloff"].any() or table["smoothing"].any())
+        self.are_cut = bool(((table["flags"] & cut) == cut).any())
+        self.limits_bounces = bool((table["max_bounces"] < UNLIMITED_BOUNCES).any())
         if kept is not None and np.array_equal(kept["kind"], table["kind"]):
             for column in _LEARNED:
                 table[column] = kept[column]
