@@ -97,8 +97,7 @@ class Lights(BufferSet):
         """Whether the light of any is scattered less often than the paths allow."""
         self._portals: Portals | None = None
         self._allocation: PhotonAllocation | None = None
-        self._names: list[str] = []
-        self._powers: list[float] = []
+        self._list = LightList()
         self._max_photons = 1
         """Largest number of photons of an iteration."""
         self.parameters: dict[str, object] = {}
@@ -139,7 +138,7 @@ class Lights(BufferSet):
     @property
     def source_watts(self) -> dict[str, float]:
         """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and ENVIRONMENT."""
-        return self._by_source(self._powers)
+        return self._by_source(self._list.powers)
 
     @property
     def source_photons(self) -> dict[str, int]:
@@ -148,7 +147,7 @@ class Lights(BufferSet):
 
     def _by_source(self, values: list) -> dict:
         sums: dict[str, float] = {}
-        for name, value in zip(self._names, values):
+        for name, value in zip(self._list.names, values):
             sums[name] = sums.get(name, 0) + value
         return sums
 
@@ -206,9 +205,9 @@ class Lights(BufferSet):
 
     def _allocate_first(self, lights: LightList, max_photons: int, photons: int, keep_learned: bool) -> None:
         """Take the table of the lights, with so many photons; what was learned is kept for the same lights."""
-        table, names = lights.table, self._names
+        table, names = lights.table, self._list.names
         kept = self.table if keep_learned and lights.names == names else None
-        self._names, self._powers = lights.names, lights.powers
+        self._list = lights
         self.table, self._max_photons = table, max_photons
         soft, cut = LightFlag.SOFT, LightFlag.SOFT | LightFlag.HOLDS_SURFACES
         self.has_falloff = bool((table["flags"] & soft).any() or table["falloff"].any() or table["smoothing"].any())
@@ -309,13 +308,13 @@ class Lights(BufferSet):
     @property
     def photon_flux(self) -> float:
         """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
-        return sum(self._powers) / require(self._allocation).photon_count
+        return sum(self._list.powers) / require(self._allocation).photon_count
 
     @property
     def world_photon_flux(self) -> float:
         """Mean flux of those of the world's photons that contribute, W, the channels' mean; 0 where there are none."""
         worlds = np.flatnonzero((self.table["kind"] == LightShape.WORLD) & (self.table["photon_count"] > 0))
         return sum(
-            self._powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
+            self._list.powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
             for index in worlds
         )
