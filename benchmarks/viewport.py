@@ -45,7 +45,7 @@ from .peers.metrics import displayed, exposure_of, flip
 VIEWS_A_SECOND = 30.0
 ORBIT_SECONDS, DEGREES_A_SECOND = 3.0, 30.0
 SEED, REFERENCE_SEED = 0, 1234
-MOST_SAMPLES = 1 << 16
+MAX_SAMPLES = 1 << 16
 
 
 def make_cube() -> None:
@@ -193,12 +193,12 @@ def cycles_samples(clock: Clock, size: tuple[int, int], marks: list[float]) -> l
     few, many = 1, 33
     seconds = [clock.once(lambda count=count: cycles_picture(count, size, SEED)) for count in (few, many)]
     each = max((seconds[1] - seconds[0]) / (many - few), 1e-4)
-    return [min(max(1, round((mark - seconds[0]) / each)), MOST_SAMPLES) for mark in marks]
+    return [min(max(1, round((mark - seconds[0]) / each)), MAX_SAMPLES) for mark in marks]
 
 
 def rppm_reference(context: Context, library: ProgramLibrary, clock: Clock, scene: Scene, seconds: float) -> np.ndarray:
     """(height, width, 3) of a long render with another seed."""
-    settings = dataclasses.replace(scene.settings, seed=REFERENCE_SEED, iterations=MOST_SAMPLES)
+    settings = dataclasses.replace(scene.settings, seed=REFERENCE_SEED, iterations=MAX_SAMPLES)
     mapper = ProgressivePhotonMapper(context, library)
     mapper.update(dataclasses.replace(scene, settings=settings))
     mapper.iterate()  # compiles

@@ -40,6 +40,6 @@ def scenes_of(figure: str, quick: bool, is_software: bool) -> tuple[str, ...]:
 def is_possible(figure: str) -> bool:
     """Whether the renderer can do what the figure is about; warns where it cannot."""
     if figure == "bins" and not figures.can_choose_bins():
-        log.warning("bins is left out: DeepCubemap takes no most_bins")
+        log.warning("bins is left out: DeepCubemap takes no max_bins")
         return False
     return True

@@ -53,16 +53,16 @@ _PLACEMENT_STRIDE = 8
 
 def can_choose_bins() -> bool:
     """Whether the cubemap lets us say how many depth bins a cell may have."""
-    return "most_bins" in inspect.signature(DeepCubemap.__init__).parameters
+    return "max_bins" in inspect.signature(DeepCubemap.__init__).parameters
 
 
-def make_cubemap(subject: Subject, rasterize: bool | None = None, most_bins: int | None = None) -> DeepCubemap:
-    """An empty cubemap; None is the default of DeepCubemap. ``most_bins``: depth bins that a cell may have."""
+def make_cubemap(subject: Subject, rasterize: bool | None = None, max_bins: int | None = None) -> DeepCubemap:
+    """An empty cubemap; None is the default of DeepCubemap. ``max_bins``: depth bins that a cell may have."""
     options: dict[str, object] = {}
     if rasterize is not None:
         options["rasterize"] = rasterize
-    if most_bins is not None:
-        options["most_bins"] = most_bins
+    if max_bins is not None:
+        options["max_bins"] = max_bins
     return DeepCubemap(subject.context, subject.library, **options)
 
 
@@ -100,8 +100,7 @@ def bins(subject: Subject, clock: Clock, quick: bool) -> dict:
     return {
         "rays": _ray_counts(subject),
         "points": [
-            {"most_bins": most, **_or_failure(_build_and_trace, subject, clock, {"most_bins": most}, 0)}
-            for most in tried
+            {"max_bins": most, **_or_failure(_build_and_trace, subject, clock, {"max_bins": most}, 0)} for most in tried
         ],
     }
 

@@ -164,7 +164,7 @@ def _resolution(document: dict):
 
 
 def _bins(document: dict):
-    return _sweep(document, "most_bins", "most depth bins of a cell")
+    return _sweep(document, "max_bins", "most depth bins of a cell")
 
 
 def _rays(document: dict):

@@ -153,7 +153,7 @@ def _resolution(document: dict) -> str:
 
 
 def _bins(document: dict) -> str:
-    return _sweep(document, "most_bins", "most bins")
+    return _sweep(document, "max_bins", "most bins")
 
 
 def _rays(document: dict) -> str:

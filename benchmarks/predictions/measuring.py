@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from rppm_addon.gl.context.context import Context
-from rppm_addon.gl.programs.programs import ComputeProgram, DrawProgram
+from rppm_addon.gl.programs.program import ComputeProgram, DrawProgram
 
 from .model import GPUS, RTX_2080_TI, Demand
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from rppm_addon.gl.context.context import Context
-from rppm_addon.gl.programs import programs
+from rppm_addon.gl.programs import program, programs
 from rppm_addon.gl.programs.sources import Source
 
 from .counting import UNIT, Site, counted
@@ -64,7 +64,7 @@ class Recorder:
     @contextmanager
     def recording(self) -> Iterator[None]:
         """Programs that are made count, and those that run are noted."""
-        expand, bind = programs.expand, programs._Program._bind
+        expand, bind = programs.expand, program.Program._bind
 
         def expand_counted(*arguments: object, **named: object) -> Source:
             source = expand(*arguments, **named)  # type: ignore[arg-type]
@@ -84,18 +84,18 @@ class Recorder:
                 sizes[block] = max(sizes.get(block, 0), buffers[block].size)
             bind(program, buffers, parameters)
 
-        made = programs._Program.__init__
+        made = program.Program.__init__
 
         def init_noted(program, context, pacing, sources) -> None:  # type: ignore[no-untyped-def]
             made(program, context, pacing, sources)
             texts = self._sources.setdefault(program.name, [])
             texts += [source.text for source in sources if source.text not in texts]
 
-        programs.expand, programs._Program._bind, programs._Program.__init__ = expand_counted, bind_noted, init_noted
+        programs.expand, program.Program._bind, program.Program.__init__ = expand_counted, bind_noted, init_noted
         try:
             yield
         finally:
-            programs.expand, programs._Program._bind, programs._Program.__init__ = expand, bind, made
+            programs.expand, program.Program._bind, program.Program.__init__ = expand, bind, made
 
     def reset(self) -> None:
         """Count from 0 again."""

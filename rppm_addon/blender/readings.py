@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..integrator.density_estimation.radii import radius_in_pixels, shrinkage
-from ..integrator.lights.sources import photon_shares
+from ..integrator.lights.sources import photon_fractions
 from ..integrator.memory import Memory, expected_memory
 from ..scene import Camera, DensityEstimation, RenderSettings
 from .reports import RenderKind, RenderReport
@@ -69,4 +69,4 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
 def photon_allocation(watts: Mapping[str, float], photon_weights: Mapping[str, float]) -> dict[str, float]:
     """Fractions of the photons by source, summing to 1: by power and the user's weight, 1 where none is named."""
     weights = [max(photon_weights.get(name, 1.0), 0.0) for name in watts]
-    return dict(zip(watts, photon_shares(np.array(list(watts.values())), np.array(weights)).tolist()))
+    return dict(zip(watts, photon_fractions(np.array(list(watts.values())), np.array(weights)).tolist()))

@@ -8,7 +8,8 @@ A subclass of BufferSet declares them as members of its class::
         rays = StorageBuffer("camera rays", RAY, band_pixels, block="Rays")
 
 and from that follow their allocation, what they take (``memory_bytes``), what they will take (``expected_bytes``), the
-storage blocks that they are bound as (``blocks``), and their release. ``self.rays`` is a GrowingBuffer.
+storage blocks that they are bound as (``blocks``), and their release. ``self.rays`` is a GrowingBuffer. Programs are
+declared in the same way (``ComputeShader``). A set that is not needed for its sizes (``is_needed``) has neither.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -20,7 +21,8 @@ from ..scene.errors import DeviceError
 from .buffers.buffers import REMEDY, SMALLEST, GrowingBuffer, refuse_large_block
 from .buffers.records import Record, stride
 from .context.context import Context
-from .programs.programs import Bindable, ProgramLibrary
+from .programs.program import Bindable, ComputeProgram
+from .programs.programs import ProgramLibrary
 
 Count = Callable[[Any], int]
 """Items by the sizes that a set was made for."""
@@ -51,11 +53,17 @@ class Declared(Generic[Made]):
         # What a set has made stands among its own attributes, which Python looks up first.
         if instance is None:
             return self
-        raise AttributeError(f"{owner.__name__} is to call BufferSet.__init__ before it uses what it declares")
+        raise AttributeError(
+            f"{owner.__name__} is off, or it is to call BufferSet.__init__ before it uses what it declares"
+        )
 
     def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Made:
         """The set's own one, for these sizes. Raises DeviceError when the device has no room for it."""
         raise NotImplementedError
+
+    def make_empty(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Made | None:
+        """Return the member of a set that is off, without items; None where such a set has none."""
+        return self.make(context, library, sizes, remedy)
 
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """By name, the bytes that follow from the sizes."""
@@ -73,7 +81,7 @@ class StorageBuffer(Declared[GrowingBuffer]):
 
     Without a count its length follows from the scene, and whoever fills it requires it; where the count is 0 there is
     none. remedy: the set's if none is given. texel_bytes: that of GrowingBuffer. block: name of the storage block that
-    shaders read or write it as.
+    shaders read or write it as. zeroed: whether its items are 0 at first.
     """
 
     def __init__(
@@ -85,19 +93,27 @@ class StorageBuffer(Declared[GrowingBuffer]):
         remedy: str | None = None,
         texel_bytes: int | None = None,
         block: str = "",
+        zeroed: bool = False,
     ) -> None:
         self.block = block
+        self._zeroed = zeroed
         self._name, self._remedy, self._count = name, remedy, count
         self._texel_bytes = texel_bytes
         self._item_size, self._header_size = stride(item), stride(header) if header else 0
 
     def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> GrowingBuffer:
         """Declared.make."""
-        sizes_of_items = self._item_size, self._header_size
-        buffer = GrowingBuffer(context, self._name, self._remedy or remedy, *sizes_of_items, self._texel_bytes)
+        buffer = self.make_empty(context, library, sizes, remedy)
         if count := self._count_for(sizes):
             buffer.require_items(count)
+            if self._zeroed:
+                buffer.clear()
         return buffer
+
+    def make_empty(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> GrowingBuffer:
+        """Declared.make_empty."""
+        item_sizes = self._item_size, self._header_size
+        return GrowingBuffer(context, self._name, self._remedy or remedy, *item_sizes, self._texel_bytes)
 
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""
@@ -141,8 +157,26 @@ class Part(Declared[Set]):
         self.kind.refuse_large(context, sizes)
 
 
+class ComputeShader(Declared[ComputeProgram]):
+    """A compute program, by the path of its shader. It belongs to the library, and a set that is off has none."""
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+
+    def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> ComputeProgram:
+        """Return the program. Raises ShaderError as ProgramLibrary.compute does."""
+        return library.compute(self._path)
+
+    def make_empty(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> None:
+        """Declared.make_empty."""
+
+    def expected_bytes(self, sizes: object) -> dict[str, int]:
+        """Declared.expected_bytes: none."""
+        return {}
+
+
 class BufferSet:
-    """Owner of what it declares and of what else it is told to own."""
+    """Owner of what it declares and of what else is given to it."""
 
     remedy: ClassVar[str] = REMEDY
     """Advice to the user where the device has no room for a buffer."""
@@ -156,12 +190,20 @@ class BufferSet:
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         """sizes: what the counts follow from. Raises DeviceError when the device has no room."""
+        self.is_on = self.is_needed(sizes)
+        """Whether the set has its buffers and programs."""
         self._owned: list[tuple[Resource, str]] = []
         self._sets: list[BufferSet] = []
         self._block_buffers: list[tuple[str, GrowingBuffer]] = []
         """Buffers that are bound as storage blocks, each with the block's name."""
         for name, declared in self._declared.items():
-            made = vars(self)[name] = self.own(declared.make(context, library, sizes, self.remedy))
+            make = declared.make if self.is_on else declared.make_empty
+            made = make(context, library, sizes, self.remedy)
+            if made is None:
+                continue
+            vars(self)[name] = made
+            if not isinstance(declared, ComputeShader):
+                self.own(made)
             if isinstance(made, BufferSet):
                 self._sets.append(made)
             elif isinstance(declared, StorageBuffer) and declared.block:
@@ -200,6 +242,11 @@ class BufferSet:
         return sum_by_name(_bytes_of(resource, name) for resource, name in self._owned)
 
     @classmethod
+    def is_needed(cls, sizes: Any) -> bool:  # noqa: ARG003  sets that are not always needed ask them
+        """Whether a set for these sizes is used at all. Without, its buffers are empty and it has no programs."""
+        return True
+
+    @classmethod
     def part_kinds(cls) -> list[type["BufferSet"]]:
         """The classes of its parts."""
         return [declared.kind for declared in cls._declared.values() if isinstance(declared, Part)]
@@ -207,12 +254,16 @@ class BufferSet:
     @classmethod
     def expected_bytes(cls, sizes: object) -> dict[str, int]:
         """By name, the bytes that follow from the sizes, known before anything is allocated."""
+        if not cls.is_needed(sizes):
+            return {}
         return sum_by_name(declared.expected_bytes(sizes) for declared in cls._declared.values())
 
     @classmethod
     def refuse_large(cls, context: Context, sizes: object) -> None:
         """Raise DeviceError, before anything is made, where a buffer would be larger than the device allows one to be,
         or all together than what it has left."""
+        if not cls.is_needed(sizes):
+            return
         for declared in cls._declared.values():
             declared.refuse_large(context, sizes, cls.remedy)
         needed, available = sum(cls.expected_bytes(sizes).values()), context.available_memory

@@ -41,7 +41,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.scatter(context, band, segment)
             listeners.paths_scattered(events, segment)
             stages.coverage.probe(context, importons, band, segment)
-            raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_used else None
+            raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_on else None
             targets = importons.splat_targets(context, segment, raster)
             estimator.splat(targets, context.timers)  # Direct-, IndirectSplatting
             yield
@@ -80,7 +80,7 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
 
 
 def _read_findings(events: BandEvents, stages: StageSet, learning: Learning) -> BandFindings:
-    """Read what a band tells of its photons, once nothing needs the radiances of the band any more."""
+    """Read what is learned from the photons of a band, once nothing needs the radiances of the band any more."""
     context, sums, band = events.context, events.sums, events.band
     taken, fraction = sums.photons_taken(band.pixel_count), learning.photon_fraction(events.iteration)
     stages.caustic_radii.narrow(context.blocks, sums, band, events.radii, fraction, context.timers)

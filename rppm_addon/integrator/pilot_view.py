@@ -22,7 +22,7 @@ MOST_PIXELS = 1 << 14
 """Most pixels of the first pilot view. The percentiles of so many footprints are those of all within a percent."""
 FEWEST_HITS = 1 << 8
 """With less, what is seen is small in the picture, and all pixels have to look for it."""
-MOST_GATHERING_RAYS = 1 << 11
+MAX_GATHERING_RAYS = 1 << 11
 """Most gathering rays that are followed to where they end."""
 
 
@@ -93,7 +93,7 @@ def view_pilot(context: StageContext, stages: StageSet, follows_rays: bool) -> P
             importons.scatter(context, band, 0)
             footprints.append(importons.footprints(band.pixel_count))
             if follows_rays:
-                stride = -(-columns * rows // MOST_GATHERING_RAYS)
+                stride = -(-columns * rows // MAX_GATHERING_RAYS)
                 ends.append(_ends_of_gathering_rays(context, stages, band.pixel_count, stride))
         pilot = np.concatenate(footprints).reshape(rows, columns)
         if np.count_nonzero(pilot) >= FEWEST_HITS:

@@ -5,7 +5,8 @@ from collections.abc import Iterable
 
 from ..gl.buffer_sets import BufferSet, Part, sum_by_name
 from ..gl.context.context import Context
-from ..gl.programs.programs import Bindable, ProgramLibrary
+from ..gl.programs.program import Bindable
+from ..gl.programs.programs import ProgramLibrary
 from ..scene.scene import Scene
 from ..scene.settings import FirstCameraHits
 from .camera_paths.camera_hits import CameraHits
@@ -71,16 +72,15 @@ class StageSet(BufferSet):
         """Raises DeviceError when the device has no room for them."""
         self._sizes = StageSizes.of(scene, demands)
         self.refuse_large(context, self._sizes)
-        with library.defining(self._sizes.defines):
+        with library.defining(self._sizes.features.defines):
             super().__init__(context, library, self._sizes)
             self.camera_hits: CameraHits = self.own(
                 _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)
             )
         self.coverage = Coverage(library)
-        self.listeners = Listeners(
-            [self.photon_noise, self.film, self.noise_estimate, self.light_passes, self.light_groups]
-        )
-        """Told of what happens in a band, in this order."""
+        listeners = self.photon_noise, self.film, self.noise_estimate, self.light_passes, self.light_groups
+        self.listeners = Listeners(stage for stage in listeners if stage.is_on)
+        """Called for the events of a band, in this order."""
         self.bands = self._sizes.bands
 
     def fits(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> bool:
@@ -107,7 +107,7 @@ class StageSet(BufferSet):
         }
 
     def events_of(self, context: StageContext, iteration: Iteration, band: Band, radii: Radii) -> BandEvents:
-        """Return the events of a band, of which listeners are told."""
+        """Return the events of a band, with which listeners are called."""
         sums = self.density_estimator.sums
         return BandEvents(context, iteration, band, radii, self.importons, self.direct_light, self.final_gather, sums)
 

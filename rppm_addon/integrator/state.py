@@ -103,7 +103,7 @@ def restore_state(state: RenderState, stages: StageSet, lights: Lights, learning
         )
     if state.rest is None:
         if learning.weighs_noise and state.iteration < LEARNING_ITERATIONS:
-            raise CheckpointError("the checkpoint does not tell the noise of photons; begin anew")
+            raise CheckpointError("the checkpoint lacks the noise of photons; begin anew")
     elif state.rest.shape != stages.photon_noise.shape:
         raise CheckpointError(f"the checkpoint has {state.rest.shape} samples of noise; begin anew")
     stages.caustic_radii.restore(state.radius_factors)

@@ -18,7 +18,7 @@ from .colorimetry import XYZ_TO_REC709
 from .traits.emitted import reachable
 
 LINE_F, LINE_D, LINE_C = 486.13e-9, 587.56e-9, 656.27e-9
-"""Meters: Fraunhofer's lines by which glasses are told apart."""
+"""Meters: Fraunhofer's lines by which glasses are classified."""
 STEPS = 64
 SHORTEST, LONGEST = 390e-9, 710e-9
 """Meters. Beyond, eyes see less than a thousandth of the light."""

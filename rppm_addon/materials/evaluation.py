@@ -2,15 +2,16 @@
 """Emission of node graphs that belong to no surface: worlds, lights and volumes."""
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-import moderngl
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, StorageBuffer
 from ..gl.buffers.constants import Constants
 from ..gl.buffers.records import Record
 from ..gl.context.context import Context
+from ..gl.programs.program import Bindable
 from ..gl.programs.programs import ProgramLibrary
 from ..scene.scene import Scene
 
@@ -101,7 +102,7 @@ class GraphEvaluator(BufferSet):
         self,
         text: str,
         first_constant: int,
-        buffers: dict[str, moderngl.Buffer],
+        buffers: Mapping[str, Bindable],
         width: int,
         height: int,
         from_camera: bool,

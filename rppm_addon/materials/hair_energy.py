@@ -13,7 +13,7 @@ from ..gl.buffers.constants import Constants
 from .albedo_tables import SIZE
 
 ROUGHNESS_DEGREE, COSINE_DEGREE = 4, 5
-_ROUGHEST, _LEAST_COSINE, _INDICES = 0.85, 0.05, (0.33, 0.62)
+_ROUGHEST, _MIN_COSINE, _INDICES = 0.85, 0.05, (0.33, 0.62)
 HAIR_ENERGY = [
     0.003, 1.033, 0.947, -6.358, -5.983, 1.234, 0.353, 16.441, 14.703, -17.438, -6.621, 5.04,
     -0.071, -7.649, 0.598, 41.824, 19.871, -24.104, -30.254, -14.494, -2.781, 10.2, 0.0, 0.0,
@@ -35,7 +35,7 @@ def coefficients(table: np.ndarray) -> np.ndarray:
     """(5, 6, 2) by the power of roughness, of 1 - cosine, and of z, of a table (SIZE, SIZE, SIZE)."""
     at = np.linspace(0.0, 1.0, SIZE)
     z, roughness, cosine = np.meshgrid(at, at, at, indexing="ij")
-    used = (roughness <= _ROUGHEST) & (cosine >= _LEAST_COSINE) & (z > _INDICES[0]) & (z < _INDICES[1])
+    used = (roughness <= _ROUGHEST) & (cosine >= _MIN_COSINE) & (z > _INDICES[0]) & (z < _INDICES[1])
     z, roughness, cosine, loss = z[used], roughness[used], cosine[used], 1.0 - table[used].astype(float)
     powers = [(i, j, k) for i in range(ROUGHNESS_DEGREE + 1) for j in range(COSINE_DEGREE + 1 - i) for k in range(2)]
     terms = np.stack([roughness ** (2 + i) * (1.0 - cosine) ** j * z**k for i, j, k in powers], axis=-1)

@@ -30,7 +30,7 @@ W/(m^3 sr), are not of this material: item n - 1 has those of medium n. ``medium
 path's flags, the same everywhere."""
 MEDIA_BITS = 20
 """Bits that paths have for the numbers of the media that they are in (shaders/materials/medium.glsl)."""
-MOST_MEDIA = (1 << MEDIA_BITS // 2) - 1
+MAX_MEDIA = (1 << MEDIA_BITS // 2) - 1
 """Media of a scene: paths can be in two at once, and in more where there are fewer."""
 Constants("Media", MEDIA_BITS=MEDIA_BITS, FIRST_MEDIUM=32 - MEDIA_BITS, MEDIA_UNKNOWN=(1 << 32) - 1)
 StorageBlock("Materials", "Material materials[];")

@@ -102,7 +102,7 @@ class Camera:
     """(4, 4) float64, camera to world, its axes of length 1: a rigid motion, or mirrored or sheared by parents."""
     window: tuple[float, float, float, float]
     """left, right, bottom, top of the whole frame: tangents (perspective, at distance 1), meters
-    (orthographic), or shares of the frame, 0 to 1 without a shift (panorama)."""
+    (orthographic), or fractions of the frame, 0 to 1 without a shift (panorama)."""
     width: int = field(metadata=declared(minimum=1, maximum=(1 << 31) - 1))
     """Pixels of the whole frame."""
     height: int = field(metadata=declared(minimum=1, maximum=(1 << 31) - 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cryptomatte: passes that tell compositors which object, material or asset covers how much of a pixel.
+"""Cryptomatte: passes that show compositors which object, material or asset covers how much of a pixel.
 
 Friedman and Jones, Fully automatic ID mattes with support for motion blur and transparency, 2015; names, hashes and
 metadata as in the Cryptomatte specification 1.2 and in Cycles.
@@ -77,7 +77,7 @@ def joined(entries: Iterable[RenderPass], passes: Mapping[str, np.ndarray]) -> n
 
 
 def ranked(passes: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The passes of a film as compositors want them: in each pixel the largest shares first."""
+    """The passes of a film as compositors want them: in each pixel the largest fractions first."""
     layers = layers_of(entry for entry in PASSES if entry.name in passes)
     found = dict(passes)
     for entries in layers.values():
@@ -125,7 +125,7 @@ def asset_of(scene: Scene, object_name: str) -> str:
 
 
 def names_in(layer: str, scene: Scene) -> list[str]:
-    """All names that a layer of a scene may tell of, each once."""
+    """All names that a layer of a scene may have, each once."""
     if layer == MATERIALS:
         return list(dict.fromkeys([*(material.name for material in scene.materials), DEFAULT_MATERIAL]))
     objects = dict.fromkeys(instance.object_name for instance in scene.instances)

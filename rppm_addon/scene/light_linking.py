@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which objects light shines on and which ones stop it, as Blender's light and shadow linking tells."""
+"""Which objects light shines on and which ones stop it, by Blender's light and shadow linking."""
 
 from dataclasses import dataclass, field
 
 from .common.declared import declared
 
 LIGHT_SETS = 64
-"""Sets of objects that lights tell apart, at most; objects that nobody names are in set 0."""
+"""Sets of objects that lights distinguish, at most; objects that nobody names are in set 0."""
 ALL_SETS = -1
 """Memberships are the bits of 64-bit integers."""
 

@@ -10,7 +10,7 @@ from .common.declared import declared
 from .light_linking import LightLinking
 
 SMOOTH_NORMALS = ".smooth_normals"
-"""Name of the attribute by which meshes that are displaced tell of faces that are not smooth: of corners, the normal
+"""Name of the attribute by which meshes that are displaced mark faces that are not smooth: of corners, the normal
 along which vertices move, and 1 where the face is smooth, 0 where it is flat. Without it all faces are smooth."""
 UNDISPLACED = ".undisplaced"
 """Name of the attribute that has the positions of vertices before they were displaced, object space."""
@@ -165,6 +165,6 @@ class Instance:
     linking: LightLinking | None = None
     """None: all lights shine on it, and it stops them."""
     terminator_geometry_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
-    """Up to which cosine shadow rays begin on the surface that the normals tell of, not on its triangles."""
+    """Up to which cosine shadow rays begin on the surface that the normals describe, not on its triangles."""
     terminator_shading_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
     """How much earlier than at the horizon the light of lights fades out; 1 is at 45 degrees."""

@@ -57,10 +57,10 @@ class Shutter:
     meshes: list[Deformation] = field(default_factory=list)
     camera: CameraMovement | None = None
 
-    def time_of(self, share: float) -> float:
-        """The time, 0 to 1, by which a share of all the light that the shutter lets pass has passed."""
+    def time_of(self, fraction: float) -> float:
+        """The time, 0 to 1, by which a fraction of all the light that the shutter lets pass has passed."""
         weights = np.maximum(np.nan_to_num(self.curve), 0.0)
         passed = np.concatenate([[0.0], np.cumsum(weights)])
         if passed[-1] <= 0.0:
-            return share
-        return float(np.interp(share * passed[-1], passed, np.linspace(0.0, 1.0, len(passed))))
+            return fraction
+        return float(np.interp(fraction * passed[-1], passed, np.linspace(0.0, 1.0, len(passed))))

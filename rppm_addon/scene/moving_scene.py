@@ -96,9 +96,9 @@ class _Poses:
         angle = np.arccos(np.clip(np.einsum("ni,ni->n", a, b), -1.0, 1.0))[:, None]
         near = angle < 1e-6  # the sines would vanish
         sine = np.where(near, 1.0, np.sin(angle))
-        share_a = np.where(near, 1.0 - part, np.sin((1.0 - part) * angle) / sine)
-        share_b = np.where(near, part, np.sin(part * angle) / sine)
-        quaternions = share_a * a + share_b * b
+        weight_a = np.where(near, 1.0 - part, np.sin((1.0 - part) * angle) / sine)
+        weight_b = np.where(near, part, np.sin(part * angle) / sine)
+        quaternions = weight_a * a + weight_b * b
         quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
         result = np.zeros((len(a), 4, 4))
         result[:, :3, :3] = _rotations(quaternions) @ _mixed(np.swapaxes(self._stretches, 0, 1), first, part)

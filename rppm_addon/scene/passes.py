@@ -30,7 +30,7 @@ class Accumulation(enum.Enum):
     INSPECTION = 3
     """None do: it is computed once, from the deep cubemap and not from iterations."""
     COVERAGE = 4
-    """Pairs of an identifier and the share of the pixel that it covers: the means of what iterations see of each.
+    """Pairs of an identifier and the fraction of the pixel that it covers: the means of what iterations see of each.
     In the film in the order in which they were found, in a frame the largest first (scene/cryptomatte.py)."""
     FOUND_MEAN = 5
     """The mean of the first surfaces' that iterations find: what sees the background does not count."""
@@ -108,7 +108,7 @@ def _for_denoisers(name: str, channels: str, kind: PassKind) -> RenderPass:
 
 
 CRYPTOMATTE_PAIRS = 2
-"""Pairs of an identifier and a share in the four channels of a pass."""
+"""Pairs of an identifier and a fraction in the four channels of a pass."""
 CRYPTOMATTE_LEVELS = 16
 """The most pairs that Blender knows."""
 

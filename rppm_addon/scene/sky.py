@@ -28,11 +28,11 @@ class Sky:
     altitude: float = 100.0
     """Height of the viewer above the sea, meters."""
     air_density: float = 1.0
-    """Density of air molecules as a share of the Earth's."""
+    """Density of air molecules as a fraction of the Earth's."""
     aerosol_density: float = 1.0
-    """Density of dust, pollution and droplets as a share of a city's (Blender 4: dust_density)."""
+    """Density of dust, pollution and droplets as a fraction of a city's (Blender 4: dust_density)."""
     ozone_density: float = 1.0
-    """Density of the ozone layer as a share of the Earth's."""
+    """Density of the ozone layer as a fraction of the Earth's."""
     sun_direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
     """To the sun; PREETHAM and HOSEK_WILKIE only, as the following."""
     turbidity: float = 2.2

@@ -42,7 +42,7 @@ class TracedTriangles:
         resolution: int = 64,
         rasterize: bool | None = True,
         texel_buffers: bool | None = None,
-        most_clustered: int | None = None,
+        max_cluster_size: int | None = None,
         structure: AccelerationStructure | None = None,
     ) -> None:
         """triangles: (n, 3, 3) vertices; structure: which this releases, None makes a deep cubemap of the other
@@ -54,7 +54,7 @@ class TracedTriangles:
         self.triangles = context.moderngl.buffer(vertices.tobytes())
         self.center = np.asarray(center, np.float32)
         self.structure = structure or DeepCubemap(
-            context, library, rasterize, texel_buffers=texel_buffers, most_clustered=most_clustered
+            context, library, rasterize, texel_buffers=texel_buffers, max_cluster_size=max_cluster_size
         )
         self._rays = ActivePaths(context, library, "rays of a test", "take fewer")
         self.build(resolution)

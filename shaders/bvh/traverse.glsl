@@ -34,7 +34,7 @@ Hit trace_ray(Ray ray, bool any_hit) {
     RayTest test = make_ray_test(ray, any_hit);
     bvec3 moves = greaterThan(abs(ray.direction), vec3(1e-30));
     SlabTest slabs = SlabTest(ray.origin, 1.0 / mix(vec3(1e-30), ray.direction, moves));
-    uint stack[MOST_DEPTH];
+    uint stack[MAX_DEPTH];
     int top = 0;
     uint child = 0u;
     // Never reached: a ray meets a few hundred nodes.

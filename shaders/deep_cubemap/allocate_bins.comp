@@ -17,10 +17,10 @@ void main() {
     if (number >= deep_cubemap.binned_cell_count) return;
     BinnedCell binned = binned_cells[number];
     int slices = bitCount(cubemap_cells[binned.cell].slices);
-    int wanted = min(1 << findMSB(binned.fragments), int(deep_cubemap.most_bins));
+    int wanted = min(1 << findMSB(binned.fragments), int(deep_cubemap.max_bins));
     wanted = max(min(wanted, int(float(FEW_BINS * slices) * float(binned.fragments) / float(binned.slices))), 1);
     int exponent = 0;
-    while (exponent < 15 && slices << (exponent + 1) <= wanted << JOIN_MOST) ++exponent;
+    while (exponent < 15 && slices << (exponent + 1) <= wanted << MAX_JOIN) ++exponent;
     cubemap_cells[binned.cell].content = pack_content(CELL_BINS, 0u, uint(exponent));
     uint start = atomicAdd(deep_cubemap.bin_count, uint(bins_total(cubemap_cells[binned.cell])) + 1u);
     cubemap_cells[binned.cell].content = pack_content(CELL_BINS, start, uint(exponent));

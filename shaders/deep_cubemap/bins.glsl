@@ -12,10 +12,10 @@
 
 DEPTH_BINS_ACCESS buffer DepthBins { uint bin_ends[]; };
 
-// The cell's content tells how many bins: 2^cut a slice, or one for 2^join slices.
+// The cell's content has the number of bins: 2^cut a slice, or one for 2^join slices.
 #include <DepthBins>
-int bins_cut(CubemapCell cell) { return max(int(content_count(cell.content)) - JOIN_MOST, 0); }
-int bins_join(CubemapCell cell) { return max(JOIN_MOST - int(content_count(cell.content)), 0); }
+int bins_cut(CubemapCell cell) { return max(int(content_count(cell.content)) - MAX_JOIN, 0); }
+int bins_join(CubemapCell cell) { return max(MAX_JOIN - int(content_count(cell.content)), 0); }
 
 int bins_total(CubemapCell cell) { return ((bitCount(cell.slices) << bins_cut(cell)) - 1 >> bins_join(cell)) + 1; }
 

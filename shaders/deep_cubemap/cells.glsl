@@ -39,7 +39,7 @@ CubemapCell cubemap_cell(uint index) { return cubemap_cells[index]; }
 #endif
 
 #include <CellKinds>
-const uint MOST_LISTED = 6u;
+const uint MAX_LISTED = 6u;
 
 uint content_kind(uint content) { return content >> 30; }
 uint content_start(uint content) { return (content & 0x3fffffffu) >> 4; }
@@ -59,7 +59,7 @@ uint dense_cell_index(int face, ivec2 cell, int level, int root_side) {
     return index;
 }
 
-// Depths less than half of the core's radius are never walked; to tell them apart would waste slices.
+// Depths less than half of the core's radius are never walked; to separate them would waste slices.
 uvec2 depth_codes(vec2 interval, DeepCubemapState cubemap) {
     return floatBitsToUint(max(interval, vec2(0.5 * cubemap.core_radius)));
 }

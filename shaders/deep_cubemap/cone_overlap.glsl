@@ -32,7 +32,7 @@ struct ConeCorners {
     vec3 edge0, edge1, edge2;
 };
 
-// What the corner lines of any cone need of a triangle. An edge's moment tells on which side of the
+// What the corner lines of any cone need of a triangle. An edge's moment shows on which side of the
 // edge a line through the center passes.
 ConeCorners prepare_corners(vec3 a, vec3 b, vec3 c) {
     return ConeCorners(cross(b - a, c - a), a, cross(b, c - b), cross(c, a - c), cross(a, b - a), b - c, c - a, a - b);

@@ -16,11 +16,11 @@ uniform Parameters { DivideLevel parameters; };
 
 // Dividing pays off where the cells of the tile hold so many fewer triangles each that this outweighs the
 // steps from one to the next; and where all of them together do not hold too much more.
-const uint MOST_TOUCHED = 7u;
+const uint MAX_TOUCHED = 7u;
 
 bool is_divisible(CubemapCell cell) {
-    return parameters.level < deep_cubemap.last_level && cell.slices <= MOST_TOUCHED * cell.content
-           && cell.slices + 16u * deep_cubemap.least_gain < 16u * cell.content;
+    return parameters.level < deep_cubemap.last_level && cell.slices <= MAX_TOUCHED * cell.content
+           && cell.slices + 16u * deep_cubemap.min_gain < 16u * cell.content;
 }
 
 // Whether the device can hold the fragments that dividing the cell may make; else it stays as it is.
@@ -54,7 +54,7 @@ void main() {
         CubemapCell cell = cubemap_cells[first + child];
         if (is_divisible(cell) && has_room(cell)) {
             divided |= 1u << child;
-        } else if (cell.content <= MOST_LISTED) {
+        } else if (cell.content <= MAX_LISTED) {
             listed += cell.content;
         }
     }
@@ -69,7 +69,7 @@ void main() {
         uint content;
         if ((divided >> child & 1u) != 0u) {
             content = add_tile(next_tile++, 4 * place_cell(place) + ivec2(child & 3u, child >> 2), place_face(place));
-        } else if (count <= MOST_LISTED) {
+        } else if (count <= MAX_LISTED) {
             content = pack_content(CELL_LIST, next_entry, 0u);  // counted up as the entries come
             next_entry += count;
         } else {

@@ -4,11 +4,11 @@
 #include "deep_cubemap/extents.glsl"
 
 // Nearer than this many margins, dividing by the depth no longer says where a point is.
-const float LEAST_MARGINS = 16.0;
+const float MIN_MARGINS = 16.0;
 
 // The triangle's extent on a face; false if it is not seen through this face.
 bool face_extent(vec3 a, vec3 b, vec3 c, float margin, out uvec2 packed_extent) {
-    float near = LEAST_MARGINS * margin;
+    float near = MIN_MARGINS * margin;
     vec4 extent;
     if (!cone_extent(a, b, c, vec4(-1.0, 1.0, -1.0, 1.0), margin, near, near, extent)) return false;
     extent = extent * 0.5 + 0.5;

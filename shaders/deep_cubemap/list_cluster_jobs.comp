@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint: TRIANGLE_CLUSTERS=1 MOST_CLUSTERED=4u
-// What list_overlap_jobs.comp does, in clusters: a thread takes MOST_CLUSTERED triangles that follow each other, and
+// lint: TRIANGLE_CLUSTERS=1 MAX_CLUSTER_SIZE=4u
+// What list_overlap_jobs.comp does, in clusters: a thread takes MAX_CLUSTER_SIZE triangles that follow each other, and
 // lists those together that lie together. Those near the center are core triangles one by one.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "deep_cubemap/clusters.glsl"
 
 // The box around a cluster has at most so many times the surface of all boxes around its triangles.
-const float MOST_LOOSE = 2.0;
+const float MAX_LOOSENESS = 2.0;
 
 float half_surface(vec3 box) { return dot(box, box.yzx); }
 
@@ -26,7 +26,7 @@ bool lie_together(uint first, uint size) {
         high = max(high, highest);
         sum += half_surface(highest - lowest);
     }
-    return half_surface(high - low) <= MOST_LOOSE * sum;
+    return half_surface(high - low) <= MAX_LOOSENESS * sum;
 }
 
 uvec2 extent_around(uvec2 one, uvec2 other) {
@@ -34,7 +34,7 @@ uvec2 extent_around(uvec2 one, uvec2 other) {
                  max(one.y & 0xffffu, other.y & 0xffffu) | max(one.y >> 16, other.y >> 16) << 16);
 }
 
-// Once for all faces: what every triangle tells of all of them.
+// Once for all faces: what every triangle adds to all of them.
 void enter_triangles(uint first, uint size) {
     for (uint triangle = first; triangle < first + size; ++triangle) {
         Corners corners = corners_of(triangle);
@@ -60,12 +60,12 @@ void list_cluster(uint first, uint size) {
 }
 
 void main() {
-    uint first = MOST_CLUSTERED * invocation_index();
-    uint end = min(first + MOST_CLUSTERED, deep_cubemap.triangle_count);
+    uint first = MAX_CLUSTER_SIZE * invocation_index();
+    uint end = min(first + MAX_CLUSTER_SIZE, deep_cubemap.triangle_count);
     if (first >= end) return;
     enter_triangles(first, end - first);
     while (first < end) {
-        uint size = MOST_CLUSTERED;
+        uint size = MAX_CLUSTER_SIZE;
         while (size > 1u && (first % size != 0u || !lie_together(first, size))) size >>= 1;
         list_cluster(first, size);
         first += size;

@@ -3,7 +3,7 @@
 // lint:
 // lint: TRIANGLE_CLUSTERS=1
 // What overlap.vert and overlap.frag do, without the rasterizer. A group takes as many jobs as it has
-// threads and shares out all their cells evenly, whatever the sizes of the rectangles.
+// threads and distributes all their cells evenly, whatever the sizes of the rectangles.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
 #include "common/invocation.glsl"

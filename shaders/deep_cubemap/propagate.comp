@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hands the fragments of a level on, a thread each: to the cell's list, to those that are binned later,
+// Propagates the fragments of a level, a thread each: to the cell's list, to those that are binned later,
 // or to the tile that divides the cell. A triangle that lies in one cell of the tile needs no test.
 layout(local_size_x = 64) in;
 #define DEEP_CUBEMAP_BUILD
@@ -51,7 +51,7 @@ void main() {
     } else {
         uint number = binned_cell_number(cell.content);
         if (number < deep_cubemap.binned_cell_capacity) atomicAdd(binned_cells[number].slices, uint(bitCount(slices)));
-        uint place = atomicAdd(deep_cubemap.handed_binned_count, 1u);
+        uint place = atomicAdd(deep_cubemap.propagated_binned_count, 1u);
         if (place < deep_cubemap.binned_fragment_capacity) {
             binned_fragments[place] = BinnedFragment(fragment.cell, fragment.triangle, quantized_depths);
         }

@@ -4,7 +4,7 @@
 #include "materials/albedo_tables.glsl"
 
 // Where a lobe scatters any light, its color must be none to divide by 0.
-const float LEAST_REFLECTANCE = 1e-6;
+const float MIN_REFLECTANCE = 1e-6;
 
 struct LightColors {
     vec3 diffuse;
@@ -12,7 +12,7 @@ struct LightColors {
     vec3 transmission;
 };
 
-vec3 not_nothing(vec3 reflectance) { return max(reflectance, vec3(LEAST_REFLECTANCE)); }
+vec3 not_nothing(vec3 reflectance) { return max(reflectance, vec3(MIN_REFLECTANCE)); }
 
 #ifdef HAIR_LOBES
 #include "common/bsdf/hair_color.glsl"

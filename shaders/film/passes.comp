@@ -34,7 +34,7 @@ readonly buffer Attributes;
 readonly buffer ShadingInstances;
 readonly buffer Radiances;
 
-// Lobes up to this alpha, and what is specular by more than this share, denoisers see through. As in Cycles.
+// Lobes up to this alpha, and what is specular by more than this fraction, denoisers see through. As in Cycles.
 const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
 const uint DENOISING_DATA = 1u << PASS_DENOISING_ALBEDO | 1u << PASS_DENOISING_NORMAL | 1u << PASS_DENOISING_DEPTH;
 const uint COLORS = 1u << PASS_DIFFUSE_COLOR | 1u << PASS_GLOSSY_COLOR | 1u << PASS_TRANSMISSION_COLOR;

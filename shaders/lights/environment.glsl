@@ -36,7 +36,7 @@ vec3 world_radiance(vec3 direction, bool seen) {
 // Without textures: gathering rays then find it so well that no shadow rays are sent to it.
 bool environment_is_even() { return iteration.environment_width == 0u; }
 
-// A distribution lists the cumulated shares of the rows, then those of the cells within each row.
+// A distribution lists the cumulated probabilities of the rows, then those of the cells within each row.
 struct DirectionTable {
     uint first;
     uint width;
@@ -55,7 +55,7 @@ uint environment_search(uint first, uint count, float u) {
     return low;
 }
 
-float environment_share(uint first, uint index) {
+float environment_probability(uint first, uint index) {
     return environment_distribution[first + index] - (index == 0u ? 0.0 : environment_distribution[first + index - 1u]);
 }
 
@@ -68,25 +68,26 @@ uvec2 table_cell(DirectionTable table, vec2 uv) {
 float table_pdf(DirectionTable table, vec3 direction) {
     vec2 uv = direction_to_equirectangular(direction);
     uvec2 cell = table_cell(table, uv);
-    float share = environment_share(table.first, cell.y)
-                  * environment_share(table.first + table.height + cell.y * table.width, cell.x);
-    return share * float(table.width) * float(table.height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
+    float probability = environment_probability(table.first, cell.y)
+                        * environment_probability(table.first + table.height + cell.y * table.width, cell.x);
+    return probability * float(table.width) * float(table.height) / (2.0 * PI * PI * max(sin(PI * (1.0 - uv.y)), 1e-6));
 }
 
 // A direction toward the world and its pdf in 1/sr.
 vec3 sample_table(DirectionTable table, vec2 u, out float pdf) {
     uint width = table.width, height = table.height;
     uint row = environment_search(table.first, height, u.y);
-    float row_share = environment_share(table.first, row);
+    float row_probability = environment_probability(table.first, row);
     uint first = table.first + height + row * width;
     uint column = environment_search(first, width, u.x);
-    float column_share = environment_share(first, column);
+    float column_probability = environment_probability(first, column);
     float below_row = row == 0u ? 0.0 : environment_distribution[table.first + row - 1u];
     float below_column = column == 0u ? 0.0 : environment_distribution[first + column - 1u];
-    vec2 uv = vec2((float(column) + clamp((u.x - below_column) / max(column_share, 1e-20), 0.0, 1.0)) / float(width),
-                   (float(row) + clamp((u.y - below_row) / max(row_share, 1e-20), 0.0, 1.0)) / float(height));
+    vec2 uv =
+        vec2((float(column) + clamp((u.x - below_column) / max(column_probability, 1e-20), 0.0, 1.0)) / float(width),
+             (float(row) + clamp((u.y - below_row) / max(row_probability, 1e-20), 0.0, 1.0)) / float(height));
     float sine = max(sin(PI * (1.0 - uv.y)), 1e-6);
-    pdf = row_share * column_share * float(width) * float(height) / (2.0 * PI * PI * sine);
+    pdf = row_probability * column_probability * float(width) * float(height) / (2.0 * PI * PI * sine);
     return equirectangular_to_direction(uv);
 }
 
@@ -114,8 +115,8 @@ vec2 table_to_square(DirectionTable table, vec3 direction) {
     uint first = table.first + table.height + cell.y * table.width;
     float below_row = cell.y == 0u ? 0.0 : environment_distribution[table.first + cell.y - 1u];
     float below_column = cell.x == 0u ? 0.0 : environment_distribution[first + cell.x - 1u];
-    return vec2(below_column + within.x * environment_share(first, cell.x),
-                below_row + within.y * environment_share(table.first, cell.y));
+    return vec2(below_column + within.x * environment_probability(first, cell.x),
+                below_row + within.y * environment_probability(table.first, cell.y));
 }
 
 vec2 world_to_square(vec3 direction) {

@@ -42,7 +42,7 @@ float spread_attenuation(Light light, float tangent) {
     return max(0.0, (light.spread_tangent - tangent) * light.spread_scale);
 }
 
-// Toward a point that sees the light along to_light, of any length. The cosine would tell little of small angles.
+// Toward a point that sees the light along to_light, of any length. The cosine has little precision for small angles.
 float attenuation_toward(Light light, vec3 to_light) {
     return spread_attenuation(light, length(cross(to_light, light.normal)) / -dot(to_light, light.normal));
 }
@@ -119,7 +119,7 @@ TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
     vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
     vec3 normal = normalize(cross(v1 - v0, v2 - v0));
     return TrianglePoint(position, normal, emissive.triangle, sampled_radiance(emissive),
-                         emissive.share / max(emissive.area, 1e-30), ray_offset(normal, v0, v1, v2));
+                         emissive.probability / max(emissive.area, 1e-30), ray_offset(normal, v0, v1, v2));
 }
 
 // --- direct light ---------------------------------------------------------------------------
@@ -248,14 +248,14 @@ bool is_on_area_light(Light light, vec2 coordinates) {
 // empty where nothing shines. True where the disk itself is to be sampled: by what shines from there, which pays where
 // at most half of that misses the light, unless the disk is so wide that its rim is much farther away.
 bool narrow_to_spread(inout Light light, vec3 point) {
-    const float WIDEST_TANGENT = 2.0, LEAST_WITHIN = 2.2;  // of the square around the disk, which has 4
+    const float WIDEST_TANGENT = 2.0, MIN_WITHIN = 2.2;  // of the square around the disk, which has 4
     float radius = max(dot(point - light.position, light.normal), 0.0) * light.spread_tangent;
     float spanned = length(cross(light.axis_u, light.axis_v));
     vec2 foot = area_light_coordinates(light, point - light.position);
     vec2 reach = radius / spanned * vec2(length(light.axis_v), length(light.axis_u));
     vec2 low = max(foot - reach, -1.0), high = min(foot + reach, 1.0), extent = max(0.5 * (high - low), 0.0);
     float within = 4.0 * extent.x * extent.y * spanned;
-    if (light.spread_tangent <= WIDEST_TANGENT && within > LEAST_WITHIN * radius * radius) return true;
+    if (light.spread_tangent <= WIDEST_TANGENT && within > MIN_WITHIN * radius * radius) return true;
     if (within >= light.area) return false;
     light.kind = LIGHT_RECTANGLE;
     light.position = area_light_corner(light, 0.5 * (low.x + high.x), 0.5 * (low.y + high.y));
@@ -269,8 +269,8 @@ vec3 sample_spread_disk(Light light, vec3 point, vec2 u) {
     vec3 t, b;
     tangent_frame(light.normal, t, b);
     vec2 place = sample_disk(u);
-    float share = clamp(dot(place, place), 1e-20, 1.0);
-    place *= light.spread_tangent * (0.5 - sin(asin(1.0 - 2.0 * share) / 3.0)) * inversesqrt(share);
+    float fraction = clamp(dot(place, place), 1e-20, 1.0);
+    place *= light.spread_tangent * (0.5 - sin(asin(1.0 - 2.0 * fraction) / 3.0)) * inversesqrt(fraction);
     return dot(point - light.position, light.normal) * (place.x * t + place.y * b - light.normal);
 }
 
@@ -419,22 +419,22 @@ LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u
     return result;
 }
 
-// Of the emissive meshes: of any triangle, by its share.
+// Of the emissive meshes: of any triangle, by its probability.
 LightSample sample_whole_light(Light light, vec3 point, float u_choice, vec2 u) {
     bool mesh = light.kind == LIGHT_MESH;
     uint index = mesh ? search_emissive_triangle(u_choice) : 0u;
     LightSample result = sample_light(light, index, point, u);
     if (mesh) {
-        float share = emissive_triangles[index].share;
-        result.pdf *= share;
-        result.weight /= share;
+        float probability = emissive_triangles[index].probability;
+        result.pdf *= probability;
+        result.weight /= probability;
     }
     return result;
 }
 
 // --- lights that a specular path meets ----------------------------------------------------------
 
-// Share of a light met by scattering, with a pdf, when shadow rays find it with another.
+// MIS weight of a light met by scattering, with a pdf, when shadow rays find it with another.
 // Without a pdf only scattering finds it.
 float scatter_mis_weight(float scatter_pdf, float light_pdf) {
     return scatter_pdf > 0.0 ? 1.0 - power_heuristic(light_pdf, scatter_pdf) : 1.0;

@@ -16,7 +16,7 @@ from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 pytestmark = pytest.mark.long
 
 FIGURES = ["construction", "resolution", "rays", "placement"]
-if "most_bins" in inspect.signature(DeepCubemap.__init__).parameters:
+if "max_bins" in inspect.signature(DeepCubemap.__init__).parameters:
     FIGURES.append("bins")
 ESTIMATOR = {"iterations", "path_lengths", "photon_batches", "resolutions", "splat_radius", "roulette", "final_gather"}
 FIGURES += sorted(ESTIMATOR)

@@ -19,7 +19,7 @@ from ..context.context import TEXEL_SIZE, Context
 
 IMAGES_FOR_LARGE = 8
 """Images that every device has: the most arrays of a program that may be larger than a storage block."""
-MOST_ADDED = TEXEL_SIZE + 256
+MAX_ADDED = TEXEL_SIZE + 256
 """Bytes that allocated_size adds, at most."""
 _TEXTURE_BUFFER, _READ_ONLY, WRITE_ONLY = 0x8C2A, 0x88B8, 0x88B9
 FORMATS = {"r32ui": 0x8236, "rg32ui": 0x823C, "rgba32ui": 0x8D70, "rgba32f": 0x8814}

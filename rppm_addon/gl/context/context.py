@@ -37,7 +37,7 @@ _LIMITS = (
 _NUM_PROGRAM_BINARY_FORMATS, _MAX_TEXTURE_BUFFER_SIZE, _MAX_VERTEX_IMAGE_UNIFORMS = 0x87FE, 0x8C2B, 0x90CA
 TEXEL_SIZE = 16
 """Bytes of a texel, at most."""
-_LEAST_TEXEL_SIZE = 4
+_MIN_TEXEL_SIZE = 4
 LARGEST_BUFFER = (1 << 32) - TEXEL_SIZE
 """Bytes that shaders and drivers count in 32 bits."""
 _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87FC}
@@ -199,14 +199,14 @@ class Context:
         return min(int(self.limits["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"]), LARGEST_BUFFER)
 
     @functools.cached_property
-    def most_texels(self) -> int:
+    def max_texels(self) -> int:
         """Texels that one texel buffer may span."""
         return self.integers(_MAX_TEXTURE_BUFFER_SIZE)[0]
 
     @property
     def whole_limit(self) -> int:
         """Bytes that a buffer may have for every program to take all of it at once."""
-        return min(self.storage_block_limit, _LEAST_TEXEL_SIZE * self.most_texels)
+        return min(self.storage_block_limit, _MIN_TEXEL_SIZE * self.max_texels)
 
     @functools.cached_property
     def vertex_images(self) -> int:
@@ -215,7 +215,7 @@ class Context:
 
     def array_limit(self, texel_bytes: int | None) -> int:
         """Bytes of an array that is texels of so many bytes where it is larger than a storage block; None: never."""
-        return max(self.storage_block_limit, min((texel_bytes or 0) * self.most_texels, LARGEST_BUFFER))
+        return max(self.storage_block_limit, min((texel_bytes or 0) * self.max_texels, LARGEST_BUFFER))
 
     def function(self, name: str, result: Any, *arguments: Any) -> Any:
         """A GL function that moderngl does not wrap, as a ctypes function; None if the driver lacks it."""
@@ -241,7 +241,7 @@ class Context:
 
     @property
     def memory(self) -> int | None:
-        """Bytes that the device has, its own or the processor's; None where the driver does not tell."""
+        """Bytes that the device has, its own or the processor's; None where the driver does not report it."""
         if self.is_software or self.information.kind in _SHARING:
             return _memory_of_processor("MemTotal")
         if "GL_NVX_gpu_memory_info" in self.moderngl.extensions:
@@ -250,9 +250,9 @@ class Context:
 
     @property
     def available_memory(self) -> int | None:
-        """Bytes that the device has left by its driver's word; None where the driver does not tell."""
+        """Bytes that the device has left by its driver's word; None where the driver does not report it."""
         if self.is_software or self.information.kind in _SHARING:
-            # What the drivers of integrated devices tell is what the firmware keeps aside, often 256 MiB.
+            # What the drivers of integrated devices report is what the firmware keeps aside, often 256 MiB.
             return _memory_of_processor("MemAvailable")
         for extension, name in _AVAILABLE_KIBIBYTES.items():
             if extension in self.moderngl.extensions:
@@ -341,7 +341,7 @@ def device_information(device: str | None = None) -> DeviceInformation:
 
 
 def open_others(devices: list[Device], number: int | None) -> list[Device]:
-    """The devices, each opened for a moment but that of a number, with what their drivers tell or why they fail.
+    """The devices, each opened for a moment but that of a number, with what their drivers report or why they fail.
 
     Another context is the calling thread's afterwards than was before.
     """

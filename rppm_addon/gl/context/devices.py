@@ -20,7 +20,7 @@ _MOST = 64
 
 @dataclass
 class Device:
-    """A device as far as it is known: what only an open context tells is added later."""
+    """A device as far as it is known: what only an open context knows is added later."""
 
     number: int
     """EGL's, from 0."""

@@ -9,7 +9,8 @@ CONTEXT_LOST = 0x0507
 
 
 class DriverErrors:
-    """Asks for them on behalf of all: glGetError forgets what it tells, and who wants one of them loses the others."""
+    """Asks for them on behalf of all: glGetError forgets what it returns, and whoever wants one of them loses the
+    others."""
 
     def __init__(self, function: Callable) -> None:
         """function: Context.function."""
@@ -19,7 +20,7 @@ class DriverErrors:
     def take(self, code: int) -> bool:
         """Whether there has been such an error since this was last asked."""
         found: set[int] = set()
-        while (error := self._get_error()) and error not in found:  # a lost context tells of its loss again and again
+        while (error := self._get_error()) and error not in found:  # a lost context reports its loss again and again
             found.add(error)
         self._found |= found
         was_found = code in self._found

@@ -35,7 +35,7 @@ class KernelDevice:
     identity: str
     """VENDOR:DEVICE@ADDRESS of the PCI bus; elsewhere platform@NAME."""
     memory: int | None
-    """Bytes of its own, where the kernel's driver tells."""
+    """Bytes of its own, where the kernel's driver reports them."""
 
 
 _MAKERS = {"1002": "AMD", "10de": "NVIDIA", "8086": "Intel"}
@@ -44,7 +44,7 @@ _INTEL_INTEGRATED = "0000:00:02.0"
 
 
 def kernel_device(file: str, sysfs: Path = Path("/sys")) -> KernelDevice | None:
-    """Read the kernel's facts about the device of a file such as /dev/dri/renderD128; None where it tells nothing."""
+    """Read the kernel's facts about the device of a file such as /dev/dri/renderD128; None where it reports nothing."""
     try:
         number = Path(file).stat().st_rdev
         folder = sysfs / "dev" / "char" / f"{os.major(number)}:{os.minor(number)}" / "device"
@@ -85,7 +85,7 @@ class _Request(ctypes.Structure):
 
 
 def _is_fused(file: str, folder: Path, driver: str) -> bool:
-    """Whether a device of AMD is part of a processor, by its driver's word: its address and memory do not tell."""
+    """Whether a device of AMD is part of a processor, by its driver's word: its address and memory do not show it."""
     if driver != "amdgpu":
         return False
     with contextlib.suppress(OSError):

@@ -34,7 +34,7 @@ class Pace:
 
     seconds_per_item: float | None = None
     """None where nothing is known."""
-    most_seconds: float = 0.0
+    max_seconds: float = 0.0
     """Seconds that all items together took, the longest lately."""
     epoch: int = 0
     """Count of the calls to Pacing.forget at the program's last run."""
@@ -42,7 +42,7 @@ class Pace:
 
     def learn(self, items: int | None, seconds: float) -> None:
         """So many items, where that is known, took so long."""
-        self.most_seconds = max(seconds, _FORGETTING * self.most_seconds)
+        self.max_seconds = max(seconds, _FORGETTING * self.max_seconds)
         if items:
             self.seconds_per_item = seconds / items
 
@@ -54,9 +54,9 @@ class Pacing:
         self._context = context
         self._flush = context.function("glFlush", None)
         self._unflushed = 0.0
-        """Seconds that what the device was given since it was last told to begin will take."""
+        """Seconds that what the device was given since it last began will take."""
         self._epoch = 0
-        self.most_seconds = LONGEST_SECONDS
+        self.max_seconds = LONGEST_SECONDS
         """Seconds that one piece may keep the device; share_with_window sets it."""
         self.pieces = 0
         """Pieces that work was cut into, so far."""
@@ -64,7 +64,7 @@ class Pacing:
     def share_with_window(self, shares: bool) -> None:
         """Whether somebody works in a window meanwhile, which waits for the device unless that is the processor."""
         waits = shares and not self._context.is_software
-        self.most_seconds = LONGEST_SECONDS_BESIDE_WINDOW if waits else LONGEST_SECONDS
+        self.max_seconds = LONGEST_SECONDS_BESIDE_WINDOW if waits else LONGEST_SECONDS
 
     def forget(self) -> None:
         """Measure speeds anew, as what comes may take longer than what has been measured."""
@@ -77,7 +77,7 @@ class Pacing:
 
         Args:
             pace: the program's own.
-            items: tells how many there are, for which the device may have to be waited for.
+            items: returns how many there are, for which the device may have to be waited for.
             whole: gives the device all of them.
             part: gives it those from a first one on, so many.
         """
@@ -101,7 +101,7 @@ class Pacing:
 
     @property
     def _aim(self) -> float:
-        return _AIM * self.most_seconds
+        return _AIM * self.max_seconds
 
     def _seconds_of(self, work: Callable[[], None]) -> float:
         """Run work and return the seconds that it takes the device, which has nothing else to do."""
@@ -137,7 +137,7 @@ class Pacing:
             pace.learn(None, seconds)
             if seconds > self._aim:  # of how many items is not known
                 pace.seconds_per_item = None
-        return pace.seconds_per_item is not None and pace.most_seconds <= self._aim
+        return pace.seconds_per_item is not None and pace.max_seconds <= self._aim
 
     def _run_unwatched(self, pace: Pace, whole: Callable[[], None]) -> None:
         """Without waiting for the device; what it took is looked up later."""
@@ -148,7 +148,7 @@ class Pacing:
             pace.stopwatch.start()
             whole()
             pace.stopwatch.stop()
-        self._unflushed += pace.most_seconds
+        self._unflushed += pace.max_seconds
         if self._unflushed > self._aim:
             self._flush()
             self._unflushed = 0.0
@@ -177,7 +177,7 @@ class _Stopwatch:
 
     @property
     def seconds(self) -> float | None:
-        """Seconds from start to stop, told once: None after that, and until the device has come to their end."""
+        """Seconds from start to stop, returned once: None after that, and until the device has come to their end."""
         if not self.is_running or not self._value(1, _QUERY_RESULT_AVAILABLE):
             return None
         self.is_running = False

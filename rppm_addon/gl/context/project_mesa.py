@@ -40,7 +40,7 @@ def has_gpu(devices: Path = Path("/dev")) -> bool:
 
 
 def system_release() -> str:
-    """The system's name and version, such as "debian 12"; empty where it does not tell."""
+    """The system's name and version, such as "debian 12"; empty where it is unknown."""
     try:
         release = platform.freedesktop_os_release()
     except OSError:

@@ -22,7 +22,7 @@ NEEDS: Mapping[str, tuple[int, str]] = {
 
 
 def refuse_small_devices(name: str, limits: Mapping[str, Any]) -> None:
-    """Raise DeviceError where a device has less than programs need. What a driver does not tell counts as enough."""
+    """Raise DeviceError where a device has less than programs need. What a driver does not report counts as enough."""
     for limit, (needed, words) in NEEDS.items():
         offered = int(limits.get(limit, needed))
         if offered < needed:

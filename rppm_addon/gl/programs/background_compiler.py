@@ -29,7 +29,7 @@ from .sources import Source
 
 log = logging.getLogger(__name__)
 
-_MOST_THREADS = 6
+_MAX_THREADS = 6
 """Beside the renderer's. More would find nothing to do: the longest program takes a seventh of the time of all."""
 _KEEPING_SECONDS = 0.1
 """Drivers write their cache from a thread of their own, a little after the program is there."""
@@ -161,7 +161,7 @@ class BackgroundCompiler:
             return waiting or source.text in self._compiling or source.text in self._compiled
 
     def _start_thread(self) -> None:
-        most = min(usable_cores() - 1, _MOST_THREADS) if self._hurries else 1
+        most = min(usable_cores() - 1, _MAX_THREADS) if self._hurries else 1
         if self._threads[self._hurries] < most:
             self._threads[self._hurries] += 1
             threading.Thread(target=self._run, args=(self._hurries,), name="RPPM compiler").start()

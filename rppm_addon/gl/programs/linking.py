@@ -18,7 +18,7 @@ log = logging.getLogger(__name__)
 _KINDS = {".comp": 0x91B9, ".vert": 0x8B31, ".frag": 0x8B30, ".geom": 0x8DD9}
 """GL's kinds of shaders by the suffixes of our files."""
 _COMPILE_STATUS, _LINK_STATUS, _INFO_LOG_LENGTH = 0x8B81, 0x8B82, 0x8B84
-_MOST_SHADERS = 8
+_MAX_SHADERS = 8
 _Function: TypeAlias = Callable[..., None]
 _FALSE_ALARM = re.compile(r"warning: `\w+' used uninitialized")
 """Mesa says so of variables of a whole shader where a function stands before the one that sets them."""
@@ -85,8 +85,8 @@ class Linker:
         return shader
 
     def _detach_all(self, program: int) -> None:
-        shaders, count = (ctypes.c_uint * _MOST_SHADERS)(), ctypes.c_int(0)
-        self._attached(program, _MOST_SHADERS, ctypes.byref(count), shaders)
+        shaders, count = (ctypes.c_uint * _MAX_SHADERS)(), ctypes.c_int(0)
+        self._attached(program, _MAX_SHADERS, ctypes.byref(count), shaders)
         for shader in shaders[: count.value]:
             self._detach(program, shader)
 

@@ -9,7 +9,7 @@ from ..buffers.texel_buffers import FORMATS, IMAGES_FOR_LARGE, WRITE_ONLY, Texel
 
 DEFINE = "TEXEL_BUFFERS"
 """Shaders that are given it declare texel buffers in place of storage blocks of the same names."""
-MOST_IMAGES = 16
+MAX_IMAGES = 16
 """Images of a compute shader that llvmpipe has had at all times."""
 _FORMAT_BY_WORDS = {1: "r32ui", 2: "rg32ui", 4: "rgba32ui"}
 _WORDS = 4
@@ -56,7 +56,7 @@ def read_as_texels(
     """
     found = dict(declared)
     taken = {buffer.unit for buffer in declared.values()}
-    units = [unit for unit in range(MOST_IMAGES) if unit not in taken]
+    units = [unit for unit in range(MAX_IMAGES) if unit not in taken]
     large_units = dict(zip(sorted(large), units, strict=False))
     for_words = dict(zip(sorted(large), reversed(units[len(large_units) : IMAGES_FOR_LARGE]), strict=False))
     units = units[len(large_units) :]
@@ -91,7 +91,7 @@ def read_as_texels(
 
 
 def _asks_for_length(text: str, array: str) -> bool:
-    """Return whether a shader asks for the array's length, which texel buffers do not tell."""
+    """Return whether a shader asks for the array's length, which texel buffers do not have."""
     return re.search(rf"\b{array}\s*\.\s*length\b", text) is not None
 
 

@@ -7,6 +7,7 @@ import moderngl
 
 from ...gl.buffer_sets import BufferSet
 from ...gl.context.context import Context
+from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
@@ -30,8 +31,8 @@ class AccelerationStructure(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context, self._library = context, library
-        self._triangles: moderngl.Buffer | None = None
         self._has_one_sided = False
+        self._traversal_buffers: dict[str, Bindable] = {}
 
     def build(
         self,
@@ -53,9 +54,9 @@ class AccelerationStructure(BufferSet):
         raise NotImplementedError
 
     @property
-    def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
-        """Buffers by block name that kernels which include TRAVERSAL need."""
-        raise NotImplementedError
+    def traversal_buffers(self) -> Mapping[str, Bindable]:
+        """Buffers by block name that kernels which include TRAVERSAL need, those of the last build."""
+        return self._traversal_buffers
 
     @property
     def traversal_defines(self) -> dict[str, object]:

@@ -5,7 +5,7 @@ A software driver traces rays through it in two thirds to a fifth of the time th
 (docs/benchmarks/moves.md): a step tests two boxes, which takes few operations.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import moderngl
 import numpy as np
@@ -14,11 +14,10 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.storage_blocks import StorageBlock
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
-from ..common.require import require
-from .clustering import MOST_DEPTH, NODE, build_nodes
+from .clustering import MAX_DEPTH, NODE, build_nodes
 
 LEAF = 0x80000000
-Constants("BvhNodes", LEAF=LEAF, MOST_DEPTH=MOST_DEPTH)
+Constants("BvhNodes", LEAF=LEAF, MAX_DEPTH=MAX_DEPTH)
 StorageBlock("BvhNodes", "BvhNode bvh_nodes[];")
 
 _EMPTY_LEAF = np.uint32(LEAF)
@@ -42,17 +41,13 @@ class Bvh(AccelerationStructure):
         has_one_sided: bool = False,
     ) -> None:
         """AccelerationStructure.build."""
-        self._triangles, self._has_one_sided = triangles, has_one_sided
+        self._has_one_sided = has_one_sided
         read = triangles.read(_TRIANGLE_BYTES * triangle_count) if triangle_count else b""
         vertices = np.frombuffer(read, np.float32).reshape(-1, 3, 4)[..., :3]
         nodes = bvh_nodes(vertices, max(float(scene_radius), 1e-20) * MARGIN)
         self._nodes.require_items(len(nodes))
         self._nodes.write(nodes)
-
-    @property
-    def traversal_buffers(self) -> Mapping[str, moderngl.Buffer]:
-        """AccelerationStructure.traversal_buffers."""
-        return {"Triangles": require(self._triangles), "BvhNodes": self._nodes.buffer}
+        self._traversal_buffers = {"Triangles": triangles, **self.blocks}
 
 
 def bvh_nodes(vertices: np.ndarray, margin: float) -> np.ndarray:

@@ -19,7 +19,7 @@ NODE = Record("BvhNode", low0="vec3", child0="uint", high0="vec3", low1="vec3", 
 """An inner node: the boxes of its two children, meters, and what the children are: the number of an inner node, or
 LEAF and what a leaf holds."""
 
-MOST_DEPTH = 64
+MAX_DEPTH = 64
 """Inner nodes between the root and any leaf, at most: a ray's stack has so many places."""
 
 _REACH = 8
@@ -36,7 +36,7 @@ def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.n
     """Nodes of the hierarchy of boxes, NODE records, the root first.
 
     low, high: (3, n) float32, the boxes' corners, meters; children: (n,) uint32, what stands for each box in its
-    node. There are n - 1 nodes, and n must be 2 or more. No leaf lies deeper than MOST_DEPTH nodes.
+    node. There are n - 1 nodes, and n must be 2 or more. No leaf lies deeper than MAX_DEPTH nodes.
     """
     order = np.argsort(_morton_codes(low, high))
     low, high, children = np.take(low, order, axis=1), np.take(high, order, axis=1), children[order]
@@ -49,7 +49,7 @@ def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.n
         while len(children) > 1:
             count = len(children)
             # A pass deepens the tree by one at most.
-            is_deep = passes + (count - 1).bit_length() >= MOST_DEPTH
+            is_deep = passes + (count - 1).bit_length() >= MAX_DEPTH
             first, second = _next_in_line(count) if is_deep else _mutually_nearest(low, high, workers)
             passes += 1
             made = slice(end - len(first), end)

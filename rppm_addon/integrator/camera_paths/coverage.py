@@ -10,9 +10,9 @@ from .importons import Importons
 
 Record("CoverageParameters", segment="uint", first_pixel="uint")
 
-MOST_PROBES = 8
+MAX_PROBES = 8
 """Points of a disk that are looked at; of disks with less surface photons stay too dark."""
-Constants("Coverage", MOST_PROBES=MOST_PROBES)
+Constants("Coverage", MAX_PROBES=MAX_PROBES)
 
 
 class Coverage:

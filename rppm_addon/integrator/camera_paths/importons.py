@@ -6,7 +6,8 @@ import numpy as np
 from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import PathList
 from ..common.band import Band
 from ..common.iteration import Iteration

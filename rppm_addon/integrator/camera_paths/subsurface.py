@@ -3,11 +3,12 @@
 
 from collections.abc import Mapping
 
-from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffer_sets import ComputeShader, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable, ComputeProgram
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths, PathList
 from ..common.band import Band
 from ..common.records.random_stages import RandomStage
@@ -53,10 +54,7 @@ Cycles. Drivers on the processor end the loops of a thread after 65535 rounds.""
 
 
 class Subsurface(Stage):
-    """Paths that go below a surface walk until they come out of the same object, and are then on a diffuse surface.
-
-    Where no material has subsurface scattering there are neither programs nor buffers, and nothing is done.
-    """
+    """Paths that go below a surface walk until they come out of the same object, and are then on a diffuse surface."""
 
     memory_group = "subsurface"
     remedy = "lower the resolution or the photons per iteration"
@@ -65,22 +63,27 @@ class Subsurface(Stage):
     _hits = StorageBuffer("subsurface hits", HIT, subsurface_walks, block="ExitHits")
     _entered = PathList("paths below surfaces")
     _walking = PathList("walking paths", to_keep=True)
+    _enter = ComputeShader("camera_paths/subsurface/enter.comp")
+    _leave = ComputeShader("camera_paths/subsurface/leave.comp")
+    _enter_photons = ComputeShader("camera_paths/subsurface/enter_photons.comp")
+    _leave_photons = ComputeShader("camera_paths/subsurface/leave_photons.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._library = library
-        self.is_used = sizes.has_subsurface
-        if self.is_used:
-            names = ("enter", "leave", "enter_photons", "leave_photons")
-            self._programs = {name: library.compute(f"camera_paths/subsurface/{name}.comp") for name in names}
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where materials have subsurface scattering."""
+        return sizes.has_subsurface
 
     def walk_camera_paths(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Fill the exit closures of the active camera paths, whose hits are resolved."""
-        if not self.is_used:
+        if not self.is_on:
             return
         with context.timers.stage("camera subsurface"):
-            blocks = importons.blocks
-            self._walk(context, importons.active, blocks, ("enter", "leave"), segment, RandomStage.SUBSURFACE, band)
+            programs = self._enter, self._leave
+            self._walk(context, importons.active, importons.blocks, programs, segment, RandomStage.SUBSURFACE, band)
 
     def walk_photons(
         self,
@@ -93,10 +96,10 @@ class Subsurface(Stage):
 
         blocks: what they are, where they are and go, and the AdjointQueries that are still to be asked.
         """
-        if not self.is_used:
+        if not self.is_on:
             return
         with context.timers.stage("photon subsurface"):
-            programs = ("enter_photons", "leave_photons")
+            programs = self._enter_photons, self._leave_photons
             self._walk(context, active, blocks, programs, segment, RandomStage.SUBSURFACE_PHOTONS)
 
     def _walk(
@@ -104,7 +107,7 @@ class Subsurface(Stage):
         context: StageContext,
         active: ActivePaths,
         blocks: Mapping[str, Bindable],
-        programs: tuple[str, str],
+        programs: tuple[ComputeProgram, ComputeProgram],
         segment: int,
         stage: RandomStage,
         band: Band | None = None,
@@ -114,7 +117,7 @@ class Subsurface(Stage):
             "segment": segment,
             "first_path": band.first_pixel if band else 0,
         }
-        enter, leave = (self._programs[name] for name in programs)
+        enter, leave = programs
         walk = self._library.compute("camera_paths/subsurface/walk.comp", context.acceleration.traversal_defines)
 
         active.run(enter, blocks, parameters)

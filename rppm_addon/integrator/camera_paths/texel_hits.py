@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DirectCameraHits of textures that are baked: camera paths begin where they are told to, on a mesh."""
+"""DirectCameraHits of textures that are baked: camera paths begin at given points of a mesh."""
 
 import numpy as np
 

@@ -11,7 +11,8 @@ from ...gl.buffers.buffers import SMALLEST, GrowingBuffer, refuse_large_block
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram, ProgramLibrary
+from ...gl.programs.program import GROUP_SIZE, GROUPS_PER_ROW, Bindable, ComputeProgram
+from ...gl.programs.programs import ProgramLibrary
 
 ACTIVE_PATHS_HEADER = Record(
     "ActivePathsHeader",
@@ -164,6 +165,10 @@ class PathList(Declared[ActivePaths]):
         if self._count is not None:
             paths.require(self._count(sizes), self._to_keep)
         return paths
+
+    def make_empty(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> ActivePaths:
+        """Declared.make_empty."""
+        return ActivePaths(context, library, self._name, self._remedy or remedy)
 
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""

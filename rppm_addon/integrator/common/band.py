@@ -6,7 +6,7 @@ from dataclasses import dataclass
 MAXIMUM_BAND_PIXELS = 1 << 18
 """Pixels of a band: bounds the memory of camera paths and the length of one dispatch."""
 
-MOST_RASTER_PIXELS = 1 << 14
+MAX_RASTER_PIXELS = 1 << 14
 """Along a side of what every device of OpenGL 4.3 draws into."""
 
 
@@ -31,7 +31,7 @@ class Band:
 
 def rows_of_bands(width: int, height: int) -> int:
     """Return the rows of a band of a width x height region. The last band may have fewer."""
-    return max(1, min(height, MAXIMUM_BAND_PIXELS // width, MOST_RASTER_PIXELS))
+    return max(1, min(height, MAXIMUM_BAND_PIXELS // width, MAX_RASTER_PIXELS))
 
 
 def bands_of(width: int, height: int) -> list[Band]:

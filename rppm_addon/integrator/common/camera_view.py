@@ -10,7 +10,7 @@ from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...scene.camera import Camera, Panorama, PanoramaKind
 from ...scene.errors import SceneError
-from .band import MOST_RASTER_PIXELS
+from .band import MAX_RASTER_PIXELS
 
 PROJECTIONS = ("PERSPECTIVE", "ORTHOGRAPHIC", *(kind.name for kind in PanoramaKind))
 """Names of the projections of cameras, by number."""
@@ -42,7 +42,7 @@ CAMERA_VIEW = Record(
 )
 """The band of the frame being rendered: ``window`` is left, right, bottom, top of the band with the
 iteration's jitter; ``pixel_area`` is a pixel's area on the window: at distance 1 of perspective
-cameras, m^2 of orthographic ones, share of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
+cameras, m^2 of orthographic ones, fraction of the frame of panoramas. ``aperture_radius`` 0 is a pinhole.
 ``panorama_range`` is left, right, bottom, top in radians or of a cylinder of radius 1; ``sensor`` and
 ``lens`` are in millimeters."""
 StorageBlock("Camera", "CameraView camera;")
@@ -52,7 +52,7 @@ def is_rasterized(camera: Camera) -> bool:
     """Whether a projection onto a plane from one point, or of parallel rays, shows what the camera sees, in rows that
     every device draws."""
     is_plane = camera.panorama is None and camera.aperture is None and camera.texels is None
-    return is_plane and not camera.is_sheared and camera.resolution[0] <= MOST_RASTER_PIXELS
+    return is_plane and not camera.is_sheared and camera.resolution[0] <= MAX_RASTER_PIXELS
 
 
 def camera_view(camera: Camera, first_row: int, rows: int, offset: tuple[float, float]) -> np.ndarray:

@@ -100,6 +100,10 @@ class FilmBuffer(Declared[FilmParts]):
         ]
         return FilmParts(buffers, bands)
 
+    def make_empty(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> FilmParts:
+        """Declared.make_empty."""
+        return FilmBuffer(self._name, self._item, 0).make(context, library, sizes, remedy)
+
     def expected_bytes(self, sizes: object) -> dict[str, int]:
         """Declared.expected_bytes."""
         assert isinstance(sizes, StageSizes)

@@ -28,7 +28,7 @@ class Iteration:
     shadow_rays: int = 1
     """Shadow rays of each vertex of a camera path."""
     weighs_noise: bool = False
-    """Whether the noise that photons make is told from the rest, for later iterations to choose their photons by."""
+    """Whether the noise of photons is measured apart from the rest, for later iterations to choose their photons by."""
 
     @property
     def number_in_film(self) -> int:

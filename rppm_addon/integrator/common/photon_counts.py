@@ -16,7 +16,7 @@ from .iteration import LEARNING_ITERATIONS
 _CAMERA_VERTEX, _SHADOW_RAY, _PHOTON_PAIR = 1.0, 0.5, 0.1
 """Costs in units of a photon's ray with its hit: a vertex of a camera path, a shadow ray there, and a photon that a
 pixel takes. They are fixed numbers, not measured ones, so that renders are the same on every run."""
-_MOST_HALVINGS, _FEWEST = 4.0, 512
+_MAX_HALVINGS, _FEWEST = 4.0, 512
 """Most halvings of the first iteration's number of photons, and the fewest photons that halvings leave: so many go on
 looking for light that no photon has found."""
 _STEPS = 2.0
@@ -143,7 +143,7 @@ class NoiseVariances:
         rest_variance = max(self.rest_sum / self.pairs / EVENNESS, _NO_NOISE)
         wanted = math.sqrt(photon_variance * rest_cost / (rest_variance * max(photon_cost, 1.0)))
         steps = round(_STEPS * math.log2(first / max(wanted, 1.0)))
-        halvings = min(max(steps / _STEPS, 0.0), _MOST_HALVINGS, max(math.log2(first / _FEWEST), 0.0))
+        halvings = min(max(steps / _STEPS, 0.0), _MAX_HALVINGS, max(math.log2(first / _FEWEST), 0.0))
         return round(first * 0.5**halvings)
 
 

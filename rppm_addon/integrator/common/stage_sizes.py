@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sizes and features of a scene that determine the lengths of the stages' buffers."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from ...materials.traits.ashikhmin_shirley import has_ashikhmin
-from ...materials.traits.hair import has_hair
 from ...materials.traits.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
 from ...scene.scene import Scene
@@ -12,6 +10,7 @@ from ...scene.settings import FirstCameraHits
 from .active_paths import SEGMENTS_AT_ONCE
 from .band import Band, bands_of, rows_of_bands
 from .camera_view import is_rasterized
+from .shader_features import ShaderFeatures
 from .viewport_demands import NO_DEMANDS, ViewportDemands, with_filtered
 
 
@@ -40,14 +39,10 @@ class StageSizes:
     """Whether lights may shine on some objects only, or pass through some."""
     has_subsurface: bool = False
     """Whether light may go below surfaces."""
-    has_hair: bool = False
-    """Whether materials scatter as fibers do, of which other programs know nothing."""
-    has_ashikhmin: bool = False
-    """Whether materials reflect by the model of Ashikhmin and Shirley, likewise."""
-    has_portals: bool = False
-    """Whether portals say where the world's light comes in; likewise."""
     has_media: bool = False
     """True where any material fills the inside of what it is on."""
+    features: ShaderFeatures = field(default_factory=ShaderFeatures)
+    """Features that programs are compiled for."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -69,21 +64,9 @@ class StageSizes:
             demands.is_filtered,
             _links_lights(scene),
             demands.has_subsurface or any(has_subsurface(material.graph) for material in scene.materials),
-            demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
-            demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
-            any(light.is_portal for light in scene.lights),
             any(material.interior is not None for material in scene.materials),
+            ShaderFeatures.of(scene, demands),
         )
-
-    @property
-    def defines(self) -> dict[str, int]:
-        """Macros that tell programs about the scene: kinds of lobes to evaluate, and portals."""
-        known = {
-            "HAIR_LOBES": self.has_hair,
-            "ASHIKHMIN_LOBES": self.has_ashikhmin,
-            "PORTALS": self.has_portals,
-        }
-        return {name: 1 for name, has in known.items() if has}
 
     @property
     def has_scattered_light(self) -> bool:
@@ -137,20 +120,10 @@ def grouped_pixels(sizes: StageSizes) -> int:
     return band_pixels(sizes) if sizes.light_groups else 0
 
 
-def grouped_photons(sizes: StageSizes) -> int:
-    """Return the largest number of photons of an iteration where they store their lights' groups; else 0."""
-    return sizes.photons if sizes.light_groups else 0
-
-
-def linked_photons(sizes: StageSizes) -> int:
-    """Return the largest number of photons of an iteration where they store what their lights shine on; else 0."""
-    return sizes.photons if sizes.links_lights else 0
-
-
 def subsurface_walks(sizes: StageSizes) -> int:
-    """Return the largest number of subsurface walks, one for each camera path of a band or each photon of an iteration,
-    where light may go below surfaces; else 0."""
-    return max(band_pixels(sizes), sizes.photons) if sizes.has_subsurface else 0
+    """Return the largest number of subsurface walks, one for each camera path of a band or each photon of an
+    iteration."""
+    return max(band_pixels(sizes), sizes.photons)
 
 
 def exiting_pixels(sizes: StageSizes) -> int:

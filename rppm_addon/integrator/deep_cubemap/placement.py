@@ -12,7 +12,7 @@ FAR = 4.0
 """Times the scene's radius: from farther off, the margins of cells would outgrow small triangles."""
 
 _NUDGE = np.array([0.00307, -0.00251, 0.00193])
-"""Shares of the scene's radius, unlikely to put the center on a surface or a plane of symmetry."""
+"""Fractions of the scene's radius, unlikely to put the center on a surface or a plane of symmetry."""
 
 
 def cubemap_centers(scene: Scene, geometry: Geometry) -> Iterator[np.ndarray]:
@@ -29,8 +29,8 @@ def cubemap_centers(scene: Scene, geometry: Geometry) -> Iterator[np.ndarray]:
         offset, distance = np.zeros(3), 0.0
     point = geometry.center + offset * min(1.0, FAR * geometry.radius / max(distance, 1e-30))
     yield point
-    for share in (0.1, 0.5, 2.0):
-        yield point + share * _NUDGE * geometry.radius
+    for fraction in (0.1, 0.5, 2.0):
+        yield point + fraction * _NUDGE * geometry.radius
 
 
 def radius_about(center: np.ndarray, geometry: Geometry) -> float:

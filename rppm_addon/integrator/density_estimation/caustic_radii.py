@@ -11,25 +11,24 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
+from ...gl.buffer_sets import ComputeShader
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
-from ...gl.context.context import Context
 from ...gl.context.timers import StageTimers
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.stage import Stage
-from ..common.stage_sizes import StageSizes
 from .radii import EXPECTED_CAUSTIC_PHOTONS, Radii
 from .splat_sums import SplatSums
 
 StorageBlock("RadiusFactors", "float radius_factors[];")
 
 
-Record("NarrowParameters", count="uint", most_factor="float", expected="float")
+Record("NarrowParameters", count="uint", max_factor="float", expected="float")
 
-_LEAST_FRACTION = 0.25
-"""Least fraction of the first iteration's photons that is assumed: disks of fewer hold too few photons to tell how
+_MIN_FRACTION = 0.25
+"""Least fraction of the first iteration's photons that is assumed: disks of fewer hold too few photons to measure how
 dense they lie."""
 
 
@@ -39,10 +38,7 @@ class CausticRadii(Stage):
     memory_group = "passes"
     remedy = "lower the resolution"
     _factors = FilmBuffer("radius factors", "float")
-
-    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
-        super().__init__(context, library, sizes)
-        self._program = library.compute("density_estimation/caustic_radii/narrow.comp")
+    _program = ComputeShader("density_estimation/caustic_radii/narrow.comp")
 
     def factors(self, band: Band) -> moderngl.Buffer:
         """(pixels,) float32 of a band of the film."""
@@ -63,14 +59,14 @@ class CausticRadii(Stage):
         Of fewer photons disks hold fewer: that makes noise, which is weighed (common/photon_counts.py), and no wider
         blur.
         """
-        held = max(fraction, _LEAST_FRACTION)
+        held = max(fraction, _MIN_FRACTION)
         with timers.stage("learning"):
             self._program.run(
                 band.pixel_count,
                 {**blocks, **sums.blocks, "RadiusFactors": self._factors.of(band)},
                 {
                     "count": band.pixel_count,
-                    "most_factor": radii.most_factor,
+                    "max_factor": radii.max_factor,
                     "expected": EXPECTED_CAUSTIC_PHOTONS * radii.shrinkage**2 * held / sums.photons_for_one,
                 },
             )

@@ -31,7 +31,7 @@ Record("AllocateParameters", count="uint")
 Record("GroupParameters", buckets="uint", side="float", group_size="uint")
 Record(
     "GatherPhotonsParameters",
-    most_rounds="uint",
+    max_rounds="uint",
     rounding="float",
     caustics="uint",
     **_GRID_PARAMETERS,
@@ -50,7 +50,7 @@ Constants("PhotonGrids", CAUSTIC_GRIDS=_CAUSTIC_GRIDS)
 _FEWEST_BUCKETS = 1 << 10
 _ROUNDING_STEPS = 8.0
 """Float spacings at the largest coordinate: more than the rounding of a sphere's ends and of their division."""
-_MOST_ROUNDS = 2000
+_MAX_ROUNDS = 2000
 """Most rounds of a thread on software devices: llvmpipe ends the loops of a thread after 65535 rounds in all. The
 threads of a vector, up to 16, may have to wait for each other in both loops."""
 _NO_LIMIT = 0xFFFFFFFF
@@ -82,7 +82,7 @@ class PhotonGrid(BufferSet):
         self._place_importons = library.compute("density_estimation/photon_grid/place_importons.comp")
         self._allocate = library.compute("density_estimation/photon_grid/allocate.comp")
         self._gather = library.compute("density_estimation/photon_grid/gather.comp")
-        self._most_rounds = _MOST_ROUNDS if context.is_software else _NO_LIMIT
+        self._max_rounds = _MAX_ROUNDS if context.is_software else _NO_LIMIT
         self._parameters: dict[str, Any] = {}
 
     @property
@@ -137,14 +137,14 @@ class PhotonGrid(BufferSet):
                     "UnfinishedVisits": unfinished.buffer,
                 },
                 {
-                    "most_rounds": self._most_rounds,
+                    "max_rounds": self._max_rounds,
                     "rounding": self._rounding,
                     "caustics": self._holds_caustics,
                     **self._parameters,
                     **sums.parameters,
                 },
             )
-            if self._most_rounds == _NO_LIMIT or not unfinished.read(np.uint32, 1)[0]:
+            if self._max_rounds == _NO_LIMIT or not unfinished.read(np.uint32, 1)[0]:
                 return
             visits, unfinished = unfinished, visits
 

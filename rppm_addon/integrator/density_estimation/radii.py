@@ -13,11 +13,11 @@ _REFERENCE_PIXELS = 1 << 20
 EXPECTED_PHOTONS, EXPECTED_BY_GATHERING = 8, 16
 """Global photons in the wide radius: where the camera looks, and at the ends of gathering rays, where nobody sees
 how wide it is."""
-_MOST_CAUSTIC_RADII = 3.0
+_MAX_CAUSTIC_RADII = 3.0
 EXPECTED_CAUSTIC_PHOTONS = 30
 """Caustic photons that a disk of the first iteration holds, if it is wider than Eq. 3's: a pixel's, or that of a photon
 by its footprint."""
-_MOST_FACTOR = 4.0
+_MAX_FACTOR = 4.0
 CORNER_RADII = 2.0
 """A gathering ray of at most so many wide radii ends in a corner."""
 
@@ -43,13 +43,13 @@ class SplatRadii:
     """r_max of Eq. 3."""
     wide: float
     """Photons that a diffuse surface has scattered; importons with a larger radius of their own keep that."""
-    most_factor: float = 1.0
+    max_factor: float = 1.0
     """The most that the radii for caustics are times Eq. 3's (caustic_radii.py)."""
 
     @property
     def caustic(self) -> float:
         """Caustics where the camera's paths come to by specular surfaces."""
-        return self.most_factor * self.narrow
+        return self.max_factor * self.narrow
 
     @property
     def final_gather(self) -> float:
@@ -69,7 +69,7 @@ class Radii:
     """For photons that a diffuse surface has scattered, of the first iteration, meters."""
     scale: float
     """s_r of Eq. 3."""
-    most_factor: float
+    max_factor: float
     """Times Eq. 3's radius, what all pixels begin with for caustics."""
     shrinkage: float
     """r_i / r_1 of Eq. 2."""
@@ -77,7 +77,7 @@ class Radii:
     @property
     def splats(self) -> SplatRadii:
         """The iteration's largest ones."""
-        return SplatRadii(self.maximum * self.shrinkage, self.wide * self.shrinkage, self.most_factor)
+        return SplatRadii(self.maximum * self.shrinkage, self.wide * self.shrinkage, self.max_factor)
 
     @property
     def final_gather(self) -> float:
@@ -97,7 +97,7 @@ class Radii:
             "radius_minimum": self.minimum,
             "radius_maximum": self.maximum,
             "final_gather_radius": self.final_gather,
-            "maximum_radius_factor": self.most_factor,
+            "maximum_radius_factor": self.max_factor,
             "wide_radius": self.splats.wide,
             "gathers_again_below": self.corner,
         }
@@ -127,7 +127,7 @@ def radius_in_pixels(settings: RenderSettings, camera: Camera) -> float:
 def maximum_radius_factor(settings: RenderSettings) -> float:
     """Times Eq. 3's radius, what all pixels begin with for caustics (caustic_radii.py)."""
     exact = not settings.use_adaptive_radius or settings.radius_minimum > 0.0 or settings.radius_maximum > 0.0
-    return 1.0 if exact else _MOST_FACTOR
+    return 1.0 if exact else _MAX_FACTOR
 
 
 def wide_radius(global_photons: int, expected: int, bounds_low: np.ndarray, bounds_high: np.ndarray) -> float:
@@ -145,7 +145,7 @@ def wide_radius(global_photons: int, expected: int, bounds_low: np.ndarray, boun
 def photons_found(counts: np.ndarray) -> float:
     """Photons that half of the view finds or more, of those that each pixel with an importon found, (n,).
 
-    Where half of the view finds next to none, the mean tells more than the median.
+    Where half of the view finds next to none, the mean is more representative than the median.
     """
     return max(float(np.median(counts)), 0.5 * float(np.mean(counts))) if len(counts) else 0.0
 
@@ -185,7 +185,7 @@ def final_gather_radius(narrow: float, wide: float) -> float:
 
     They are bright and rare there, which a wider disk makes them less.
     """
-    return min(max(narrow, wide), _MOST_CAUSTIC_RADII * narrow)
+    return min(max(narrow, wide), _MAX_CAUSTIC_RADII * narrow)
 
 
 def _seen(footprints: np.ndarray) -> np.ndarray:

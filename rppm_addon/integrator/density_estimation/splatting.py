@@ -11,8 +11,9 @@ from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record, stride
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, DrawProgram, ProgramLibrary
-from ..common.band import MOST_RASTER_PIXELS
+from ...gl.programs.program import Bindable, DrawProgram
+from ...gl.programs.programs import ProgramLibrary
+from ..common.band import MAX_RASTER_PIXELS
 from ..common.stage_sizes import StageSizes, band_pixels
 from .splat_sums import SUM_PARAMETERS, SplatSums
 from .stored_photons import CameraRaster, SplatTargets, StoredPhotons
@@ -79,7 +80,7 @@ class Splatting(BufferSet):
         )
         self._core_program = library.compute("density_estimation/splatting/core.comp")
         self._resolution = _resolution(sizes)
-        self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MOST_RASTER_PIXELS), sizes.bands[0].rows)))
+        self._direct_view = self.own(gl.empty_framebuffer((min(sizes.width, MAX_RASTER_PIXELS), sizes.bands[0].rows)))
         self._cube_size = (3 * self._resolution, 2 * self._resolution)
         self._cube_view = self.own(gl.empty_framebuffer(self._cube_size))
 

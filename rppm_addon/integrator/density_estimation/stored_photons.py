@@ -14,7 +14,8 @@ from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.bindings import ITERATION
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii
@@ -91,7 +92,7 @@ class StoredPhotons:
     groups: moderngl.Buffer
     """PhotonGroups, where there are any."""
     photon_flux: float
-    """Mean flux of all lights' photons as they leave, W, which are shared out by power."""
+    """Mean flux of all lights' photons as they leave, W, which are allocated by power."""
     radii: SplatRadii
     largest_coordinate: float
     """Largest coordinate of any position, by its absolute value, meters."""

@@ -16,7 +16,7 @@ from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..surfaces.geometry import Geometry
 from .changes import Changes
 
-_MOST_CORE_TRIANGLES = 64
+_MAX_CORE_TRIANGLES = 64
 
 
 class Acceleration:
@@ -88,7 +88,7 @@ class Acceleration:
                 geometry.has_round_shapes,
             )
             # Where few triangles touch the center: those are tested by every ray that passes it.
-            if not isinstance(structure, DeepCubemap) or structure.counts["core"] <= _MOST_CORE_TRIANGLES:
+            if not isinstance(structure, DeepCubemap) or structure.counts["core"] <= _MAX_CORE_TRIANGLES:
                 break
 
     @property

@@ -22,7 +22,7 @@ class Changes:
     """Node graphs and images, those of lights and the world included."""
     geometry: bool
     lights: bool
-    """Lights, the world, or how many photons they share."""
+    """Lights, the world, or how many photons they are allocated."""
     world: bool
     """The world, its images, or the camera if its nodes ask for it."""
     light_objects: bool

@@ -10,10 +10,10 @@ import numpy as np
 from ...gl.context.context import Context
 from ...gl.context.timers import StageTimers
 from ...gl.programs.bindings import ITERATION
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.meshes import Mesh
-from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure
 from ..common.iteration import Iteration
@@ -27,10 +27,8 @@ from .acceleration import Acceleration
 from .centering import Centering
 from .changes import Changes, changes_between, snapshot
 from .iteration_parameters import IterationBlock
-from .shutter import moment, swept_bounds
+from .shutter import SceneMotion
 from .stage_context import StageContext
-
-_NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 class DeviceScene:
@@ -49,21 +47,17 @@ class DeviceScene:
         self.centering = Centering()
         self.scene: Scene | None = None
         """Centered and displaced; with a shutter, as it is at the iteration's moment."""
-        self._source_scene: Scene | None = None
-        """The scene, its shutter included."""
         self._uploaded_scene: Scene | None = None
         """Snapshot of the scene on the device; None if there is no scene to compare a change with."""
         self._warnings: dict[str, list[str]] = {"device": context.information.warnings}
         """Warnings by part, collected when the part was built. They hold for later scenes as well."""
-        self._moving: MovingScene | None = None
-        self._swept = _NOWHERE
-        """Bounds of the space that things move through while the shutter is open (swept_bounds)."""
+        self._motion = SceneMotion()
         self._checked_bodies: dict[int, tuple[Mesh, bool]] = {}
 
     @property
     def moves(self) -> bool:
         """Whether iterations have moments of their own (move_to)."""
-        return self._moving is not None
+        return self._motion.moves
 
     @property
     def context(self) -> StageContext:
@@ -86,7 +80,7 @@ class DeviceScene:
         """Storage blocks and textures of the scene, each declared by its owner."""
         return {
             **self.geometry.blocks,
-            **self.materials.buffers,
+            **self.materials.blocks,
             **self.resolve.blocks,
             **self.lights.blocks,
             **self.acceleration.structure.traversal_buffers,
@@ -118,12 +112,9 @@ class DeviceScene:
             self._take(scene)
         if changes.geometry or changes.materials:
             self._pacing.forget()
-        self._moving = MovingScene(scene) if scene.shutter is not None else None
-        swept = swept_bounds(scene)
-        changes.geometry |= not np.array_equal(swept, self._swept)
-        self._swept = swept
+        changes.geometry |= self._motion.take(scene)
         self._build_parts(changes, scene.photon_count)
-        self._build_acceleration(changes, center_tolerance)
+        self._build_acceleration(scene, changes, center_tolerance)
         for text in itertools.chain(*self._warnings.values()):
             scene.warn(text)
         self._uploaded_scene = snapshot(scene)
@@ -144,19 +135,18 @@ class DeviceScene:
 
         The deep cubemap's center stays: it changes no picture, and a camera that moves alone costs nothing.
         """
-        shutter = require(require(self._source_scene).shutter)
-        self.scene = require(self._moving).at(shutter.time_of(moment(iteration.number, iteration.seed)))
+        self.scene = self._motion.scene_at(iteration)
         changes = changes_between(self._uploaded_scene, self.scene)
         self._uploaded_scene = None
         with self._timers.stage("motion"):
             self._build_materials(changes)
             self._build_parts(changes, iteration.photon_count, keep_learned=True)
-        self._build_acceleration(changes, center_tolerance=np.inf)
+        self._build_acceleration(self._motion.scene, changes, center_tolerance=np.inf)
         self._uploaded_scene = snapshot(self.scene)
 
     def _take(self, scene: Scene) -> None:
         self._uploaded_scene = None
-        self.scene = self._source_scene = scene
+        self.scene = scene
 
     def _build_materials(self, changes: Changes) -> None:
         scene = require(self.scene)
@@ -173,7 +163,7 @@ class DeviceScene:
         """
         scene = require(self.scene)
         if changes.geometry:
-            self.geometry.build(scene, self.materials.default_material, self._swept)
+            self.geometry.build(scene, self.materials.default_material, self._motion.swept)
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
                 self.resolve.build(scene, self.geometry, self.materials)
@@ -216,9 +206,9 @@ class DeviceScene:
         finally:
             scene.warnings = before
 
-    def _build_acceleration(self, changes: Changes, center_tolerance: float) -> None:
+    def _build_acceleration(self, scene: Scene, changes: Changes, center_tolerance: float) -> None:
         with self._timers.stage("acceleration structure"):
-            self.acceleration.update(require(self._source_scene), self.geometry, changes, center_tolerance)
+            self.acceleration.update(scene, self.geometry, changes, center_tolerance)
         self.resolve.set_accelerator(self.acceleration.structure)
 
     @property

@@ -7,15 +7,18 @@ import numpy as np
 
 from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
+from ..common.iteration import Iteration
 from ..common.low_discrepancy import van_der_corput
+from ..common.require import require
 from ..surfaces.geometry import finite_bounds, placed_boxes
 
 _MOMENTS = 17
 """Evenly over the time of the shutter: where what moves is looked for beforehand."""
+_NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
 
 
 def moment(iteration: int, seed: int) -> float:
-    """Share, 0 to 1, of the light that the shutter lets pass, by which an iteration (from 1) has its time.
+    """Return the time of an iteration (from 1) as the fraction, 0 to 1, of the light that the shutter lets pass before.
 
     Of 2^k iterations each has a 2^k-th of the time, and a random place in it. That the points of what else an
     iteration decides go through their indices in a shuffled order keeps it, such as the place on the lens, independent
@@ -54,3 +57,35 @@ def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
             low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
             high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
     return low, high
+
+
+class SceneMotion:
+    """Motion of a scene while its shutter is open; a scene without a shutter does not move."""
+
+    def __init__(self) -> None:
+        self._scene: Scene | None = None
+        self._moving: MovingScene | None = None
+        self.swept = _NOWHERE
+        """Bounds of the space that things move through (swept_bounds)."""
+
+    @property
+    def moves(self) -> bool:
+        """Whether iterations have moments of their own."""
+        return self._moving is not None
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, its shutter included."""
+        return require(self._scene)
+
+    def take(self, scene: Scene) -> bool:
+        """Take a scene; returns whether its things move through another space than before."""
+        self._scene = scene
+        self._moving = MovingScene(scene) if scene.shutter is not None else None
+        before, self.swept = self.swept, swept_bounds(scene)
+        return not np.array_equal(self.swept, before)
+
+    def scene_at(self, iteration: Iteration) -> Scene:
+        """Return the scene as it is at an iteration's moment."""
+        time = require(self.scene.shutter).time_of(moment(iteration.number, iteration.seed))
+        return require(self._moving).at(time)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...gl.context.timers import StageTimers
-from ...gl.programs.programs import Bindable
+from ...gl.programs.program import Bindable
 from ...materials.tables import MaterialTables
 from ...scene.scene import Scene
 from ...scene.settings import RenderSettings

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
@@ -39,7 +39,7 @@ Record(
 
 
 class _Names(enum.IntEnum):
-    """Whose names a layer tells of."""
+    """Kinds of names of a layer."""
 
     OF_INSTANCES = 0
     OF_MATERIALS = 1
@@ -56,12 +56,12 @@ def _pairs(layer: str) -> Callable[[StageSizes], int]:
 
 
 def _caught_paths(sizes: StageSizes) -> int:
-    return band_pixels(sizes) if sizes.has_catchers and layers_of(sizes.passes) else 0
+    return band_pixels(sizes) if sizes.has_catchers else 0
 
 
 class Cryptomatte(BufferSet):
-    """Pairs of an identifier and the share that it covers, 8 bytes each, as many a pixel as the passes of a layer have.
-    Without such passes nothing is run."""
+    """Pairs of an identifier and the fraction that it covers, 8 bytes each, as many a pixel as the passes of a layer
+    have."""
 
     remedy = "lower the resolution or the levels of Cryptomatte"
     _objects = FilmBuffer("cryptomatte of objects", "uvec2", _pairs(OBJECTS))
@@ -71,11 +71,11 @@ class Cryptomatte(BufferSet):
     _object_names = StorageBuffer("identifiers of objects", "uint")
     _material_names = StorageBuffer("identifiers of materials", "uint")
     _asset_names = StorageBuffer("identifiers of assets", "uint")
+    _program = ComputeShader("film/cryptomatte/cover.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._layers = layers_of(sizes.passes)
-        self._program = library.compute("film/cryptomatte/cover.comp") if self._layers else None
         self._buffers = {
             OBJECTS: (self._objects, self._object_names),
             MATERIALS: (self._materials, self._material_names),
@@ -84,9 +84,14 @@ class Cryptomatte(BufferSet):
         self._known: dict[str, list[str]] = {}
         """By layer, the names whose identifiers lie on the device."""
 
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """BufferSet.is_needed: for passes of Cryptomatte."""
+        return bool(layers_of(sizes.passes))
+
     def add(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Add the surfaces that the camera paths of a band have come to in a segment, before they scatter on."""
-        if self._program is None:
+        if not self.is_on:
             return
         for layer, entries in self._layers.items():
             pairs, names = self._buffers[layer]

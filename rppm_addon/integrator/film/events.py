@@ -30,7 +30,7 @@ class BandEvents:
 
 
 class Listener(Stage):
-    """A stage that the loop tells of what happens in it. It need not listen to all events."""
+    """A stage that the loop calls for its events. It need not listen to all of them."""
 
     def direct_light_found(self, events: BandEvents, segment: int) -> None:
         """Light of shadow rays was added to the camera paths of a segment, which are resolved and not yet scattered."""
@@ -43,22 +43,22 @@ class Listener(Stage):
 
 
 class Listeners:
-    """Listeners, which are told in their order: those that come later may read what earlier ones wrote."""
+    """Listeners, which are called in their order: those that come later may read what earlier ones wrote."""
 
     def __init__(self, listeners: Iterable[Listener]) -> None:
         self._listeners = tuple(listeners)
 
     def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Tell all of Listener.direct_light_found."""
+        """Call Listener.direct_light_found of all."""
         for listener in self._listeners:
             listener.direct_light_found(events, segment)
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
-        """Tell all of Listener.paths_scattered."""
+        """Call Listener.paths_scattered of all."""
         for listener in self._listeners:
             listener.paths_scattered(events, segment)
 
     def band_ended(self, events: BandEvents) -> None:
-        """Tell all of Listener.band_ended."""
+        """Call Listener.band_ended of all."""
         for listener in self._listeners:
             listener.band_ended(events)

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import Part, StorageBuffer
+from ...gl.buffer_sets import ComputeShader, Part, StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.passes import FILM_PASSES, SCATTERED_LIGHT, SHADOW_CATCHER, VECTOR, Accumulation
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer, FilmParts
-from ..common.stage_sizes import StageSizes, aov_channels, band_pixels
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
+from .aov_passes import AovPasses
 from .cryptomatte import Cryptomatte
 from .events import BandEvents, Listener
 from .motion_vectors import MotionVectors
@@ -33,7 +35,6 @@ Record(
     world_origin="vec3",
 )
 Record("FilmParameters", count="uint", quantum="float", first_pixel="uint", is_filtered="uint")
-Record("AovParameters", count="uint")
 StorageBlock("Film", "vec4 film[];")
 StorageBlock("PhotonLight", "vec4 photon_light[];")
 """Means of what photons bring, W/(m^2 sr), and of the squared luminance of all else."""
@@ -65,7 +66,7 @@ def _channels(sizes: StageSizes) -> int:
     return sum(len(entry.channels) for entry in sizes.passes if entry in FILM_PASSES)
 
 
-def _looks(sizes: StageSizes) -> bool:
+def _shows_surfaces(sizes: StageSizes) -> bool:
     return any(entry in FILM_PASSES or entry.is_aov or entry.name == VECTOR for entry in sizes.passes)
 
 
@@ -98,23 +99,21 @@ class Film(Listener):
     _radiance = FilmBuffer("film", "vec4", together=True)
     _values = FilmBuffer("pass values", "float", _channels)
     _photon_light = FilmBuffer("photons' part of the film", "vec4", lambda sizes: sizes.is_filtered, together=True)
-    _counts = FilmBuffer("pass counts", "uvec2", _looks)
+    _counts = FilmBuffer("pass counts", "uvec2", _shows_surfaces)
     _paths = StorageBuffer("pass paths", "vec4", _pass_paths, block="PassPaths")
     _cryptomatte = Part(Cryptomatte)
     _motion_vectors = Part(MotionVectors)
-    _aov_values = FilmBuffer("AOVs", "float", aov_channels)
+    _aovs = Part(AovPasses)
+    _pass_program = ComputeShader("film/passes.comp")
+    _accumulate = ComputeShader("film/accumulate.comp")
     _group_values = FilmBuffer("passes of light groups", "float", _group_channels)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._pass_program = library.compute("film/passes.comp")
         self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(sizes) else None
         catches = sizes.has_catchers and any(entry.name == SHADOW_CATCHER for entry in sizes.passes)
         self._caught_shadows = library.compute("film/caught_shadows.comp") if catches else None
         self._context = context
-        self._accumulate = library.compute("film/accumulate.comp")
-        self._accumulate_aovs = library.compute("film/aovs.comp") if aov_channels(sizes) else None
-        self._aov_channels = aov_channels(sizes)
         self.width, self.height, self._bands = sizes.width, sizes.height, sizes.bands
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Requested passes that passes.comp writes."""
@@ -122,9 +121,8 @@ class Film(Listener):
         self.found_passes = sizes.passes
         """All that read_passes gives, and those that do not come of iterations."""
         self._groups = tuple(entry for entry in sizes.passes if entry.light_group)
-        self._aovs = tuple(entry for entry in sizes.passes if entry.is_aov)
-        self._looks = bool(self.passes or self._aovs or self._motion_vectors.wanted)
-        """Whether it is told of each path when it has found its first surface."""
+        self._shows_surfaces = _shows_surfaces(sizes)
+        """Whether passes show the first surfaces of paths."""
         self._is_filtered = sizes.is_filtered
 
     def direct_light_found(self, events: BandEvents, segment: int) -> None:
@@ -134,7 +132,7 @@ class Film(Listener):
             return
         context, importons, band = events.context, events.importons, events.band
         self._cryptomatte.add(context, importons, band, segment)
-        if not self._looks:
+        if not self._shows_surfaces:
             return
         counts, parameters = self._counts.of(band), self._parameters(context, band, segment)
         self._motion_vectors.add(context, importons, counts, band, events.iteration, segment)
@@ -173,13 +171,7 @@ class Film(Listener):
                     "is_filtered": self._is_filtered,
                 },
             )
-        if self._accumulate_aovs is not None:
-            count = band.pixel_count * self._aov_channels
-            self._accumulate_aovs.run(
-                count,
-                {**context.blocks, **events.importons.blocks, "FilmAovs": self._aov_values.of(band)},
-                {"count": count},
-            )
+        self._aovs.add(context, events.importons, band)
 
     def blocks_of(self, band: Band) -> dict[str, Bindable]:
         """Storage blocks of a band's passes: those of shaders/film/passes.glsl, and GroupValues."""
@@ -240,7 +232,7 @@ class Film(Listener):
             found[entry.name] = np.concatenate(parts).reshape(shape)
             first += channels
         apart = self._motion_vectors.read() | self._cryptomatte.read()
-        return found | apart | self._read_aovs() | self._read_groups()
+        return found | apart | self._aovs.read() | self._read_groups()
 
     def _read_groups(self) -> dict[str, np.ndarray]:
         if not self._groups:
@@ -249,16 +241,10 @@ class Film(Listener):
         light = light.reshape(self.height, self.width, len(self._groups), 3)
         return {entry.name: light[:, :, number].copy() for number, entry in enumerate(self._groups)}
 
-    def _read_aovs(self) -> dict[str, np.ndarray]:
-        values = self._aov_values.read(np.float32, self._aov_channels)
-        ends = np.cumsum([0, *(len(entry.channels) for entry in self._aovs)])
-        parts = {entry.name: values[..., a:b].copy() for entry, a, b in zip(self._aovs, ends, ends[1:])}
-        return {name: part[..., 0] if part.shape[-1] == 1 else part for name, part in parts.items()}
-
     def read_pass_counts(self) -> np.ndarray:
         """(height, width, 2) uint32: iterations that the means are of, those whose path did not end before; and those
         of them that found a surface. (0, 0, 2) where there are no passes."""
-        if not self._looks:
+        if not self._shows_surfaces:
             return np.zeros((0, 0, 2), np.uint32)
         return self._counts.read(np.uint32, 2)
 
@@ -270,13 +256,11 @@ class Film(Listener):
             for band, buffer in zip(self._bands, self._values, strict=True):
                 rows = slice(band.first_row, band.first_row + band.rows)
                 buffer.upload(np.concatenate([part[rows].reshape(-1) for part in values]))
-        if self._looks:
+        if self._shows_surfaces:
             self._counts.upload(pass_counts)
-        if self._motion_vectors.wanted:
+        if self._motion_vectors.is_on:
             self._motion_vectors.restore(passes[VECTOR])
-        if self._aovs:
-            planes = [np.atleast_3d(np.asarray(passes[entry.name], np.float32)) for entry in self._aovs]
-            self._aov_values.upload(np.concatenate(planes, axis=-1))
+        self._aovs.restore(passes)
         if self._groups:
             self._group_values.upload(
                 np.stack([np.asarray(passes[entry.name], np.float32) for entry in self._groups], axis=2)

@@ -5,13 +5,13 @@ Whatever adds to Combined adds the same to the group of the light that it comes 
 none add up to it.
 """
 
-from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffer_sets import ComputeShader, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight as DirectLightMode
-from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels
+from ..common.stage_sizes import StageSizes, band_pixels
 from .events import BandEvents, Listener
 
 Record(
@@ -36,54 +36,59 @@ def _grouped_values(sizes: StageSizes) -> int:
 
 
 class LightGroups(Listener):
-    """Finds the light of each group in a band and adds it to the film's passes; without groups there are neither
-    programs nor buffers."""
+    """Finds the light of each group in a band and adds it to the film's passes."""
 
     memory_group = "passes"
     remedy = "lower the resolution or have fewer light groups"
     _grouped = StorageBuffer("light of groups", "float", _grouped_values, block="GroupedLight")
-    _seen = StorageBuffer("seen light of groups", "vec4", grouped_pixels, block="SeenLight")
-    _found = StorageBuffer("found light of a group", "vec4", grouped_pixels)
-    _taken = StorageBuffer("gathered light of a group", "vec4", grouped_pixels)
+    _seen = StorageBuffer("seen light of groups", "vec4", band_pixels, block="SeenLight")
+    _found = StorageBuffer("found light of a group", "vec4", band_pixels)
+    _taken = StorageBuffer("gathered light of a group", "vec4", band_pixels)
+    _add_direct = ComputeShader("film/light_groups/direct.comp")
+    _add_passed = ComputeShader("film/light_groups/passed.comp")
+    _add_seen = ComputeShader("film/light_groups/seen.comp")
+    _take_found = ComputeShader("film/light_groups/found.comp")
+    _accumulate = ComputeShader("film/light_groups/accumulate.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._groups = len(sizes.light_groups)
-        self._programs: dict[str, ComputeProgram] = {}
-        if self._groups:
-            names = ("direct", "passed", "seen", "found", "accumulate")
-            self._programs = {name: library.compute(f"film/light_groups/{name}.comp") for name in names}
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where light groups have passes."""
+        return bool(sizes.light_groups)
 
     def clear(self) -> None:
         """Forget what the band before found."""
-        if self._groups:
+        if self.is_on:
             self._grouped.clear()
 
     def direct_light_found(self, events: BandEvents, segment: int) -> None:
         """Listener.direct_light_found: add what DirectLight.add has added, and light objects that the paths pass."""
-        if not (self._groups and events.iteration.enters_film):
+        if not events.iteration.enters_film:
             return
         context, importons, direct_light = events.context, events.importons, events.direct_light
         with context.timers.stage("light groups"):
             if context.settings.direct_light is DirectLightMode.RAYS:
                 direct_light.active_rays.run(
-                    self._programs["direct"],
+                    self._add_direct,
                     {**context.blocks, **direct_light.blocks, **self.blocks},
                     self._parameters(),
                 )
             importons.active.run(
-                self._programs["passed"],
+                self._add_passed,
                 {**context.blocks, **importons.blocks, **self.blocks},
                 {"groups": self._groups},
             )
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
         """Listener.paths_scattered: add what else the paths have met."""
-        if not (self._groups and events.iteration.enters_film):
+        if not events.iteration.enters_film:
             return
         with events.context.timers.stage("light groups"):
             events.importons.active.run(
-                self._programs["seen"],
+                self._add_seen,
                 {**events.context.blocks, **events.importons.blocks, **self.blocks},
                 self._parameters(),
             )
@@ -91,8 +96,6 @@ class LightGroups(Listener):
     def band_ended(self, events: BandEvents) -> None:
         """Listener.band_ended: add the band's estimate to the film's passes, with what photons and gathering rays
         bring."""
-        if not self._groups:
-            return
         context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light groups"):
             light = {**context.blocks, **self.blocks}
@@ -105,9 +108,9 @@ class LightGroups(Listener):
                 self._taken.clear()
                 if context.gathers:
                     found = {**light, "GatherRadiances": self._found.buffer}
-                    self._programs["found"].run(band.pixel_count, found, parameters)
+                    self._take_found.run(band.pixel_count, found, parameters)
                     final_gather.reuse(context, self._found.buffer, self._taken.buffer, band, events.radii)
-                self._programs["accumulate"].run(
+                self._accumulate.run(
                     band.pixel_count,
                     {**light, "Radiances": self._taken.buffer},
                     parameters,

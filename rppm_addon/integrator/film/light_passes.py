@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes that tell apart what makes a picture's light: by what first surfaces make of it, and caustics.
+"""Passes that separate what makes a picture's light: by what first surfaces make of it, and caustics.
 
 Whatever adds to Combined adds a part of the same to these, so that they add up to it. Light that camera paths meet is
 the film's (shaders/film/seen_light.comp).
@@ -9,16 +9,16 @@ import enum
 
 import moderngl
 
-from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffer_sets import ComputeShader, StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight as DirectLightMode
 from ..camera_paths.final_gather import FinalGather
 from ..common.band import Band
-from ..common.stage_sizes import StageSizes, band_pixels, split_pixels
+from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.splat_sums import LightSum
 from .events import BandEvents, Listener
 from .film import pass_bits
@@ -58,23 +58,27 @@ def _caustic_pixels(sizes: StageSizes) -> int:
 
 
 class LightPasses(Listener):
-    """Adds to the film's passes what shadow rays, gathering rays and photons add to a band's radiance. Where none of
-    these passes is wanted, there are neither programs nor buffers."""
+    """Adds to the film's passes what shadow rays, gathering rays and photons add to a band's radiance."""
 
     memory_group = "passes"
     remedy = "lower the resolution"
     _found_direct = StorageBuffer("found direct light", "vec4", _scattered_pixels, block="FoundDirect")
     _found_caustics = StorageBuffer("found caustics", "vec4", _caustic_pixels, block="FoundCaustics")
-    _taken = StorageBuffer("gathered light of passes", "vec4", split_pixels)
+    _taken = StorageBuffer("gathered light of passes", "vec4", band_pixels)
+    _add_direct = ComputeShader("film/light_passes/direct.comp")
+    _take_found = ComputeShader("film/light_passes/found.comp")
+    _add_gathered = ComputeShader("film/light_passes/gathered.comp")
+    _add_photons = ComputeShader("film/light_passes/photons.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._passes = pass_bits(sizes)
         self._kept = LightSum.of(sizes) & ~LightSum.GROUPS
-        self._programs: dict[str, ComputeProgram] = {}
-        if self._kept:
-            names = ("direct", "found", "gathered", "photons")
-            self._programs = {name: library.compute(f"film/light_passes/{name}.comp") for name in names}
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where passes show scattered light or caustics."""
+        return sizes.has_scattered_light or sizes.has_caustics
 
     def clear(self) -> None:
         """Forget what the band before found."""
@@ -85,31 +89,29 @@ class LightPasses(Listener):
         """Listener.direct_light_found: add what DirectLight.add has added."""
         context, direct_light, band = events.context, events.direct_light, events.band
         by_rays = context.settings.direct_light is DirectLightMode.RAYS
-        if not (self._kept and events.iteration.enters_film and by_rays):
+        if not (events.iteration.enters_film and by_rays):
             return
         with context.timers.stage("light passes"):
             direct_light.active_rays.run(
-                self._programs["direct"],
+                self._add_direct,
                 {**context.blocks, **events.importons.blocks, **direct_light.blocks, **self.blocks},
                 self._parameters(band, segment),
             )
 
     def band_ended(self, events: BandEvents) -> None:
         """Listener.band_ended: add what FinalGather.add has added, and what photons have."""
-        if not self._kept:
-            return
         context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light passes"):
             parameters = self._parameters(band) | {"quantum": sums.quantum}
             blocks = {**context.blocks, **events.importons.blocks, **self.blocks}
-            self._programs["photons"].run(band.pixel_count, blocks, parameters)
+            self._add_photons.run(band.pixel_count, blocks, parameters)
             if not context.gathers:
                 return
-            self._programs["found"].run(band.pixel_count, blocks, parameters)
+            self._take_found.run(band.pixel_count, blocks, parameters)
             for part, found in self._parts(final_gather).items():
                 self._taken.clear()
                 final_gather.reuse(context, found, self._taken.buffer, band, events.radii)
-                self._programs["gathered"].run(
+                self._add_gathered.run(
                     band.pixel_count, {**blocks, "Radiances": self._taken.buffer}, parameters | {"part": int(part)}
                 )
 

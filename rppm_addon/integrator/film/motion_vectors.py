@@ -6,7 +6,7 @@ import dataclasses
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
@@ -33,28 +33,28 @@ Record(
 )
 
 
-def _is_wanted(sizes: StageSizes) -> bool:
-    return any(entry.name == VECTOR for entry in sizes.passes)
-
-
 class MotionVectors(BufferSet):
     """Means over the iterations that found a surface, 16 bytes a pixel, and the world's triangles of the frames before
-    and after, 48 bytes each. Without the pass nothing is run; without Scene.neighbors all vectors are 0."""
+    and after, 48 bytes each. Without Scene.neighbors all vectors are 0."""
 
     remedy = "switch off the pass Vector"
-    _vectors = FilmBuffer("motion vectors", "vec4", _is_wanted)
+    _vectors = FilmBuffer("motion vectors", "vec4")
     _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, texel_bytes=16, block="TrianglesBefore")
     _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, texel_bytes=16, block="TrianglesAfter")
+    _program = ComputeShader("film/motion_vectors/add.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._context, self._library = context, library
-        self.wanted = _is_wanted(sizes)
-        self._program = library.compute("film/motion_vectors/add.comp") if self.wanted else None
         self._uploaded: tuple[Shutter, list[Placement]] | None = None
         """Shutter and placements of the scene whose triangles are uploaded, or None."""
         self._cameras: tuple[Camera, Camera] | None = None
         """Cameras of the previous frame and of the next one, or None."""
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """BufferSet.is_needed: for the pass Vector."""
+        return any(entry.name == VECTOR for entry in sizes.passes)
 
     def add(
         self,
@@ -67,7 +67,7 @@ class MotionVectors(BufferSet):
     ) -> None:
         """Add the first surfaces that the camera paths of a band have found in a segment, before passes.comp counts
         them in ``pass_counts``."""
-        if self._program is None:
+        if not self.is_on:
             return
         self._follow(context)
         if self._cameras is None:
@@ -129,7 +129,7 @@ class MotionVectors(BufferSet):
     def read(self) -> dict[str, np.ndarray]:
         """The pass by name, (height, width, 4) float32 pixels: X and Y from here to where it was in the frame before,
         Z and W from where it will be in the next one to here."""
-        if not self.wanted:
+        if not self.is_on:
             return {}
         return {VECTOR: self._vectors.read(np.float32, 4)}
 

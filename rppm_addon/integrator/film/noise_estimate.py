@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How noisy the film is, told by half of its iterations.
+"""Noise of the film, estimated from half of its iterations.
 
 The mean of half of the iterations and that of all differ as two independent estimates do, so their distance says how
 far the mean of all is from that of infinitely many. Dammertz et al., A Hierarchical Automatic Stopping Condition for
 Monte Carlo Global Illumination (2009), in the unit of Cycles (kernel/film/adaptive_sampling.h). Where points fill
 their space evenly the mean of all is better than that: measured along edges, by 1.5 at 64 iterations and 2.3 at 512.
-What both halves have alike, the blur of the radius, cannot be told so.
+What both halves have alike, the blur of the radius, cannot be measured so.
 """
 
 import math
 
 import numpy as np
 
-from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffer_sets import ComputeShader, StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
@@ -32,7 +32,7 @@ BLOCK = BANDS_TOGETHER
 Constants("NoiseBlocks", NOISE_BLOCK=BLOCK)
 _SHORTEST_RUN, _RUNS_PER_OCTAVE = 16, 4
 LEAST_MEASURED, MEASURED_EVERY = 2 * _SHORTEST_RUN, _SHORTEST_RUN // 2
-"""Iterations of which the noise can be told, and those from one time to the next."""
+"""Iterations of which the noise can be measured, and those from one time to the next."""
 
 
 def _run_length(index: int) -> int:
@@ -43,7 +43,7 @@ def is_in_half(number: int) -> bool:
     """Whether an iteration (from 1) belongs to the half.
 
     Points of iterations fill their space evenly, and so do 2^k of them from a multiple of 2^k on, while those of every
-    other iteration, however chosen, are strewn: of them the halves would tell several times the noise that there is,
+    other iteration, however chosen, are strewn: of them the halves would show several times the noise that there is,
     most of it along edges, as all pixels look through the same subpixel. So runs of iterations belong to the half or do
     not, in the order of Thue and Morse, and are as long as a quarter of the iterations before. Radii shrink: a blur
     that goes away counts as far as it differs from run to run.
@@ -63,33 +63,33 @@ def count_in_half(iterations: int) -> int:
     return count
 
 
-def _half_values(sizes: StageSizes) -> int:
-    return 3 if sizes.measures_noise else 0
-
-
 def _block_count(sizes: StageSizes) -> int:
-    return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK) if sizes.measures_noise else 0
+    return math.ceil(sizes.width / BLOCK) * math.ceil(sizes.height / BLOCK)
 
 
 class NoiseEstimate(Listener):
-    """The mean of half of the iterations, 12 bytes a pixel; nothing where the picture does not end with its noise."""
+    """The mean of half of the iterations, 12 bytes a pixel."""
 
     memory_group = "passes"
     remedy = "lower the resolution"
-    _half = FilmBuffer("half of the film", "float", _half_values, together=True)
+    _half = FilmBuffer("half of the film", "float", 3, together=True)
     _noises = StorageBuffer("noise of blocks", "float", _block_count, block="Noises")
+    _add = ComputeShader("film/noise_estimate/add.comp")
+    _measure = ComputeShader("film/noise_estimate/measure.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self.is_on = sizes.measures_noise
-        self._add = library.compute("film/noise_estimate/add.comp") if self.is_on else None
-        self._measure = library.compute("film/noise_estimate/measure.comp") if self.is_on else None
         self._width, self._columns = sizes.width, math.ceil(sizes.width / BLOCK)
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where the picture ends with its noise."""
+        return sizes.measures_noise
 
     def band_ended(self, events: BandEvents) -> None:
         """Listener.band_ended: add the band's estimate, as Film does, of an iteration that belongs to the half."""
         iteration, band, sums = events.iteration, events.band, events.sums
-        if self._add is None or not is_in_half(iteration.number):
+        if not is_in_half(iteration.number):
             return
         with events.context.timers.stage("noise"):
             self._add.run(
@@ -106,8 +106,7 @@ class NoiseEstimate(Listener):
     def measure(self, context: StageContext, film: FilmParts, exposure: float, skipped: int, iteration: int) -> float:
         """The noise of the noisiest block of a film, (pixels, 4) float32, of the iterations after ``skipped`` up to
         ``iteration``; infinite while one of the halves is empty. Waits for the device."""
-        program = self._measure
-        if program is None:
+        if not self.is_on:
             raise ValueError("nothing is known of the noise: the stage is off")
         here = count_in_half(iteration) - count_in_half(skipped)
         rest = iteration - skipped - here
@@ -117,7 +116,7 @@ class NoiseEstimate(Listener):
             noise = 0.0
             for part, half, rows in zip(film, self._half, film.rows, strict=True):
                 blocks = self._columns * math.ceil(rows / BLOCK)
-                program.run(
+                self._measure.run(
                     blocks,
                     {**self.blocks, "Film": part.buffer, "HalfMeans": half.buffer},
                     {

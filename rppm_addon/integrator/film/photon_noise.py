@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Samples of an iteration's pixels, which tell the noise that photons make from the rest (common/photon_counts.py)."""
+"""Samples of an iteration's pixels, which separate the noise of photons from the rest (common/photon_counts.py)."""
 
 import math
 
@@ -25,12 +25,12 @@ Record(
 )
 StorageBlock("NoiseSamples", "vec4 noise_samples[];")
 
-_MOST_SAMPLES = 1 << 16
+_MAX_SAMPLES = 1 << 16
 
 
 def sample_step(width: int, height: int) -> int:
     """Return the step between the rows, and between the columns, of a film that have samples."""
-    return math.ceil(math.sqrt(width * height / _MOST_SAMPLES))
+    return math.ceil(math.sqrt(width * height / _MAX_SAMPLES))
 
 
 def _samples(sizes: StageSizes) -> int:

@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ...materials.compiler.compiler import LUMINANCE
+from ...materials.compiler.graph_constants import LUMINANCE
 from ...materials.nodes import KINDS
 from ...scene.materials import Material
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
@@ -18,7 +18,7 @@ _LARGEST = 0.5
 
 
 _LEAST = 0.05
-"""Weight of a shader, and share of metal or glass in a Principled one, from which on it counts."""
+"""Weight of a shader, and fraction of metal or glass in a Principled one, from which on it counts."""
 
 _SPECULAR = {"bsdf_glass", "bsdf_refraction", "bsdf_glossy", "bsdf_metallic", "bsdf_principled"}
 
@@ -39,8 +39,8 @@ def _makes_caustics(node: ShaderNode) -> bool:
         return True
     # A thin wall bends no light.
     bright = ("metallic",) if node.options.get("thin_wall") else ("metallic", "transmission_weight")
-    share = max(_number(node, name, 1.0) for name in bright)
-    return _number(node, "alpha", 1.0) * share > 2 * _LEAST
+    fraction = max(_number(node, name, 1.0) for name in bright)
+    return _number(node, "alpha", 1.0) * fraction > 2 * _LEAST
 
 
 def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
@@ -55,8 +55,8 @@ def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
         shaders = node.inputs.get("shader"), node.inputs.get("shader_001")
         if node.kind == "mix_shader":
             factor = _number(node, "fac", np.nan)
-            shares = (1.0, 1.0) if np.isnan(factor) else (1.0 - factor, factor)
-            pending += [(shader, weight * share) for shader, share in zip(shaders, shares, strict=True)]
+            fractions = (1.0, 1.0) if np.isnan(factor) else (1.0 - factor, factor)
+            pending += [(shader, weight * fraction) for shader, fraction in zip(shaders, fractions, strict=True)]
         elif node.kind == "add_shader":
             pending += [(shader, weight) for shader in shaders]
         else:

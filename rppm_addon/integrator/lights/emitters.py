@@ -34,13 +34,13 @@ Record("MarkParameters", count="uint", first_triangle="uint", triangle_count="ui
 _POINTS = 8
 """Places of a triangle, on either side in turn, where an emission that varies is asked for."""
 _CHUNK = 1 << 16
-_LEAST_SHARE = 0.05
+_MIN_FRACTION = 0.05
 """Fraction of a material's mean radiance that each of its triangles counts for at least, where emission varies: the
 places where it is asked for may miss what shines."""
 _SEEN_REFLECTED = RayVisibility.GLOSSY | RayVisibility.SHADOW
 """Ray visibility of emissive objects that smooth surfaces look for: the nearest one hides those behind it."""
 _STEPS = 1 << 24
-"""Shares are multiples of 2^-24: random numbers have no more steps."""
+"""Probabilities are multiples of 2^-24: random numbers have no more steps."""
 
 
 class Emitters(BufferSet):
@@ -95,7 +95,7 @@ class Emitters(BufferSet):
         self.power = math.pi * (magnitudes.T.astype(np.float64) @ (sides * records["area"]))
         if self.count:
             steps = chances(weights)
-            records["share"] = steps / _STEPS
+            records["probability"] = steps / _STEPS
             records["cumulated"] = np.cumsum(steps) / _STEPS
             traits = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
             records["traits"] = traits + (self.links << EMITTER_LINK_SHIFT)
@@ -115,8 +115,8 @@ class Emitters(BufferSet):
     def _ask(
         self, records: np.ndarray, corners: np.ndarray, kinds: np.ndarray, varying: np.ndarray, resolve: Resolve
     ) -> None:
-        """Fill in the radiance: one place tells it for each material that emits evenly, several for each triangle of
-        the others."""
+        """Fill in the radiance: one place is evaluated for each material that emits evenly, several for each triangle
+        of the others."""
         radiance = np.zeros((len(records), 3))
         even = np.nonzero(~varying)[0]
         _, first, inverse = np.unique(kinds[even], return_index=True, return_inverse=True)
@@ -128,7 +128,7 @@ class Emitters(BufferSet):
             for kind in np.unique(kinds[uneven]):
                 of_kind = uneven[kinds[uneven] == kind]
                 mean = np.average(radiance[of_kind], axis=0, weights=records["area"][of_kind])
-                radiance[of_kind] = np.maximum(radiance[of_kind], _LEAST_SHARE * mean)
+                radiance[of_kind] = np.maximum(radiance[of_kind], _MIN_FRACTION * mean)
         records["radiance"] = radiance
 
     def _emission(self, triangles: np.ndarray, corners: np.ndarray, points: int, resolve: Resolve) -> np.ndarray:
@@ -258,7 +258,7 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
 def _candidates(
     scene: Scene, geometry: Geometry, materials: MaterialTables, links: LightLinkTable
 ) -> Iterator[np.ndarray]:
-    """Return an iterator over the arrays that _may_emit tells, each joined over all instances."""
+    """Return an iterator over the arrays that _may_emit gives, each joined over all instances."""
     dark = {index for index in range(len(scene.materials)) if materials.emits[index] is Emits.NOTHING}
     by_path = {m for m, material in enumerate(scene.materials) if m not in dark and asks_for_path(material.graph)}
     found = [

@@ -28,7 +28,7 @@ def _reduced(brightness: np.ndarray) -> np.ndarray:
 
 
 def distribution_of(brightness: np.ndarray) -> np.ndarray:
-    """Cumulated shares of rows, then of the cells of each row, flat float32.
+    """Cumulated probabilities of rows, then of the cells of each row, flat float32.
 
     ``brightness`` is (height, width), row 0 at the bottom; rows count by the sine of their polar angle.
     """
@@ -78,7 +78,7 @@ class Environment(BufferSet):
 
     def build(self, world: World, images: list[Image], materials: MaterialTables) -> None:
         """Evaluate the world's nodes: once where they give one color, else for a map of all directions, and for
-        another of what the camera sees where Light Path nodes tell it apart."""
+        another of what the camera sees where Light Path nodes distinguish it."""
         for texture in self._textures:
             self.disown(texture)
         self.width = self.height = 0

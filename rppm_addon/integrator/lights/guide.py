@@ -3,7 +3,7 @@
 
 After Hachisuka and Jensen, Robust Adaptive Photon Tracing using Photon Path Visibility (2011), with tallies in place
 of their Markov chains: the unit cube of the random numbers that place and direct a light's photons is cut into
-cells, and a cell is chosen by how often its photons contributed. Every cell keeps a share, and the flux is divided
+cells, and a cell is chosen by how often its photons contributed. Every cell keeps a fraction, and the flux is divided
 by the density, so energy stays as it is.
 """
 
@@ -16,7 +16,8 @@ from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from .light_records import LightShape
 
 StorageBlock("PhotonCells", "uint photon_cells[];")
@@ -25,7 +26,7 @@ Constants("GuideCells", NO_CELL=0xFFFFFFFF, CELL_CONTRIBUTED=1 << 31)
 Record("LearnParameters", count="uint")
 
 _DEFENSIVE = 0.25
-"""Share of the photons that leave as if there were no guide: none has more than four times its plain flux."""
+"""Fraction of the photons that leave as if there were no guide: none has more than four times its plain flux."""
 
 _PRIOR_PHOTONS = 4.0
 """Photons that a cell needs until it is believed more than the cells around it."""
@@ -55,7 +56,7 @@ def cells_of(kind: int, photons: int) -> tuple[int, ...]:
 
 
 def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.ndarray:
-    """Share of each cell's photons that contribute, from tallies of any shape of powers of two.
+    """Fraction of each cell's photons that contribute, from tallies of any shape of powers of two.
 
     A cell with few photons is taken for the coarser cell that it lies in, that for the next coarser, and so on. What is
     believed of a light of which none contribute falls with the square of their number, as it may be one that shines
@@ -75,7 +76,7 @@ def contribution_probability(left: np.ndarray, contributed: np.ndarray) -> np.nd
 
 def probabilities(estimate: np.ndarray) -> np.ndarray:
     """Return the probabilities of choosing cells, (n,) summing to 1: the root of the probability to contribute gives
-    the sum of photons the least variance, and a share is defensive."""
+    the sum of photons the least variance, and a fraction is defensive."""
     weight = np.sqrt(estimate)
     return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
 
@@ -148,8 +149,8 @@ class Guide(BufferSet):
         """
         before = self._probabilities
         weights, estimates = self._choose_by_tallies(self.read_tallies())
-        shares = [(b @ estimate, now @ estimate) for b, now, estimate in zip(before, self._probabilities, estimates)]
-        return weights, np.array(shares)
+        fractions = [(b @ estimate, now @ estimate) for b, now, estimate in zip(before, self._probabilities, estimates)]
+        return weights, np.array(fractions)
 
     def restore(self, tallies: np.ndarray, learned: np.ndarray | None) -> np.ndarray | None:
         """Know what read_tallies and ``learned`` said; returns what learn said of the lights, or None before it.

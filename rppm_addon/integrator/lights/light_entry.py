@@ -9,7 +9,7 @@ from ...scene.lights import Light, LightKind
 from .light_records import LIGHT, LightFlag, LightShape
 
 
-def spot_share(cosine_cone: float, blend: float) -> float:
+def spot_solid_angle(cosine_cone: float, blend: float) -> float:
     """Power of a spot over its axial intensity: integral of its falloff over solid angle, sr."""
     cosine = np.linspace(cosine_cone, 1.0, 4097)
     x = np.clip((cosine - cosine_cone) / max((1 - cosine_cone) * blend, 1e-9), 0, 1)
@@ -25,7 +25,7 @@ def spread_constants(spread: float) -> tuple[float, float]:
     return math.tan(half), 1.0 / (math.tan(half) - half)
 
 
-def spread_share(tangent: float, scale: float) -> float:
+def spread_integral(tangent: float, scale: float) -> float:
     """Flux of a spread light over radiance times area, sr."""
     if tangent <= 0.0:
         return math.pi
@@ -67,7 +67,7 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
         # Photons go out in the round cone that holds the elliptic one.
         widest = math.atan(math.tan(min(math.acos(cosine), 1.57)) * max(1.0, max(lengths[:2]) / lengths[2]))
         entry["spread_scale"] = 1.0 - math.cos(widest) if cosine > 1e-3 else 1.0
-        return entry, strength * spot_share(cosine, light.spot_blend)
+        return entry, strength * spot_solid_angle(cosine, light.spot_blend)
     if light.kind is LightKind.SUN:
         entry["kind"] = LightShape.SUN
         cosine = math.cos(0.5 * min(max(light.sun_angle, 0.0), math.pi))
@@ -89,4 +89,4 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
     tangent, scale = spread_constants(light.spread)
     entry["spread_tangent"], entry["spread_scale"] = tangent, scale
     entry["cosine_cone"] = math.cos(math.atan(tangent))
-    return entry, strength * area * spread_share(tangent, scale)
+    return entry, strength * area * spread_integral(tangent, scale)

@@ -22,10 +22,10 @@ from ..surfaces.surface_attributes import object_record
 
 _PATTERN_WIDTH, _WIDEST_MAP = 1024, 2048
 _COARSE = (32, 16)
-"""Pixels that tell how a light falls off with the distance."""
+"""Pixels by which it is known how a light falls off with the distance."""
 _WIDEST_CONE = 1.2
 """Half an angle in radians up to which a spot's directions lie on a square rather than on a sphere."""
-_MOST_TEXELS = 1 << 24
+_MAX_TEXELS = 1 << 24
 
 
 @dataclass
@@ -144,7 +144,7 @@ def _packed(
             x, row = x + across + 2, max(row, up + 2)
             width = max(width, x)
         height = max(y + row, 1)
-        if height <= widest and width * height <= _MOST_TEXELS:
+        if height <= widest and width * height <= _MAX_TEXELS:
             return places, (width, height)
         sizes = {index: (max(across // 2, 1), max(up // 2, 1)) for index, (across, up) in sizes.items()}
 

@@ -96,7 +96,7 @@ EMISSIVE_TRIANGLE = Record(
     triangle="uint",
     area="float",
     cumulated="float",
-    share="float",
+    probability="float",
     traits="uint",
 )
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The lights of a scene on the device: their table, what chooses one of them, and how many photons each gets."""
 
-import logging
 import math
 from collections.abc import Mapping
 
@@ -10,9 +9,9 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
-from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
@@ -23,16 +22,12 @@ from .caustic_casters import caustic_targets
 from .emitters import Emitters, refuse_too_many
 from .environment import Environment
 from .guide import Guide
-from .light_entry import light_entry
-from .light_links import LightLinkTable
+from .light_list import LightList
 from .light_maps import LightMaps
 from .light_records import LIGHT, LIGHT_LINK, LIGHT_NODE, NO_LIGHT_GROUP, LightFlag, LightShape
 from .light_tree import LIGHT_TREE_PARAMETERS, LightTree
-from .portals import FIRST_PHOTON_FRACTION, PORTAL_PARAMETERS, Portals, is_portal, photon_fraction
-from .sources import ENVIRONMENT, SURFACES, photon_shares, source_name
-from .spheres import holds_surfaces
-
-log = logging.getLogger(__name__)
+from .photon_allocation import PhotonAllocation
+from .portals import PORTAL_PARAMETERS, Portals
 
 _LEARNED = ("photon_count", "first_photon", "cells", "first_cell")
 """Members of a LIGHT record that follow from which photons contributed."""
@@ -57,27 +52,10 @@ LIGHT_PARAMETERS = {
     "world_bounces": "uint",
 }
 """Parameters of every program that includes shaders/lights/lights.glsl. ``gathers_lights``: whether gathering rays
-share lights with shadow rays (shadows_are_of_all); ``world_selection`` is the probability of choosing the world for
-direct light, as MIS weights take it; ``mesh_light`` and ``world_light`` are the numbers of lights;
+find lights that shadow rays find as well (shadows_are_of_all); ``world_selection`` is the probability of choosing the
+world for direct light, as MIS weights take it; ``mesh_light`` and ``world_light`` are the numbers of lights;
 ``environment_irradiance`` what the world may give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights``
 Lights', ``world_visibility`` the rays that see the world, ``world_bounces`` its max_bounces."""
-
-
-def share_out(weights: np.ndarray, photons: int) -> np.ndarray:
-    """Split photons by weights, (n,) int64 summing to ``photons``; a positive weight gets at least one
-    while there are enough (largest remainders)."""
-    if len(weights) == 0 or weights.sum() <= 0:
-        return np.zeros(len(weights), np.int64)
-    exact = photons * (weights / weights.sum())
-    counts = np.floor(exact).astype(np.int64)
-    by_remainder = np.argsort(counts - exact, kind="stable")
-    counts[by_remainder[: photons - counts.sum()]] += 1
-    for index in np.nonzero((counts == 0) & (weights > 0))[0]:
-        richest = np.argmax(counts)
-        if counts[richest] > 1:
-            counts[richest] -= 1
-            counts[index] = 1
-    return counts
 
 
 _BOUNCED = RayVisibility.DIFFUSE | RayVisibility.GLOSSY | RayVisibility.TRANSMISSION | RayVisibility.SHADOW
@@ -111,24 +89,20 @@ class Lights(BufferSet):
         self.target_count = 0
         self.table = LIGHT.zeros(0)
         """LIGHT records, all lights'."""
+        self.has_falloff = False
+        """Whether the light of any falls off otherwise than by the square of the distance."""
+        self.are_cut = False
+        """True where surfaces lie within the radius of any soft light."""
+        self.limits_bounces = False
+        """Whether the light of any is scattered less often than the paths allow."""
         self._portals: Portals | None = None
-        self._weights = np.zeros(0)
-        self._names: list[str] = []
-        self._powers: list[float] = []
-        self._first_powers = np.zeros(0)
-        """When what is learned began, as for weights: lights that move share photons alike at all times, so that
-        a render that goes on does as well. The last is what leaves through portals, where there are any."""
+        self._allocation: PhotonAllocation | None = None
+        self._list = LightList()
+        self._max_photons = 1
+        """Largest number of photons of an iteration."""
         self.parameters: dict[str, object] = {}
         """Values of LIGHT_PARAMETERS."""
         self._triangles: moderngl.Buffer | None = None
-        self.has_falloff = False
-        self.are_cut = False
-        """True where surfaces lie within the radius of any soft light."""
-        self.links_lights = False
-        """Whether any light does not shine on everything, or is not stopped by everything."""
-        self.limits_bounces = False
-        """Whether the light of any is scattered less often than the paths allow."""
-        self._power, self._photons, self._most_photons = 0.0, 1, 1
         self.scene_radius = 0.0
         """Meters, a little more than the geometry's."""
         self.times_built = 0
@@ -136,6 +110,11 @@ class Lights(BufferSet):
         """The rays that see the world."""
         self.world_group = NO_LIGHT_GROUP
         """The world's light group by number."""
+
+    @property
+    def links_lights(self) -> bool:
+        """Whether any light does not shine on everything, or is not stopped by everything."""
+        return bool(self.parameters.get("links_lights"))
 
     @property
     def portals(self) -> Portals:
@@ -159,7 +138,7 @@ class Lights(BufferSet):
     @property
     def source_watts(self) -> dict[str, float]:
         """Power within the scene, the channels' mean, by source: lights (source_name), SURFACES and ENVIRONMENT."""
-        return self._by_source(self._powers)
+        return self._by_source(self._list.powers)
 
     @property
     def source_photons(self) -> dict[str, int]:
@@ -168,7 +147,7 @@ class Lights(BufferSet):
 
     def _by_source(self, values: list) -> dict:
         sums: dict[str, float] = {}
-        for name, value in zip(self._names, values):
+        for name, value in zip(self._list.names, values):
             sums[name] = sums.get(name, 0) + value
         return sums
 
@@ -193,124 +172,80 @@ class Lights(BufferSet):
         """
         self.times_built += 1
         self.scene_radius = radius = max(geometry.radius * 1.001, 1e-6)
-        names: list[str] = []
-        entries: list[np.ndarray] = []
-        powers: list[float] = []
-        weights: list[float] = []
-        groups: list[str] = []
-        links = LightLinkTable()
-
-        def add(name: str, entry: np.ndarray, power: np.ndarray, weight: float = 1.0, group: str = "") -> None:
-            if np.isfinite(power).all() and np.any(power):
-                names.append(name)
-                entries.append(entry)
-                powers.append(float(np.mean(np.abs(power))))
-                weights.append(max(weight, 0.0))
-                groups.append(group)
-
         if not keep_light_objects:
             self.light_maps.build(scene.lights, scene.images, materials)
-        for index, light in enumerate(scene.lights):
-            if is_portal(light):
-                continue
-            entry, power = light_entry(light, radius)
-            entry["flags"] |= LightFlag.HOLDS_SURFACES * holds_surfaces(light, scene, geometry)
-            entry["link"] = links.of_light(light)
-            nodes = self.light_maps.nodes.get(index)
-            if nodes is not None:
-                entry["strength"] *= nodes.scale
-                entry["falloff"], entry["smoothing"] = nodes.falloff, nodes.smoothing
-                if nodes.shape is not None:
-                    entry["map_shape"], entry["map_extent"], entry["map"] = nodes.shape, nodes.extent, nodes.place
-                power = power * nodes.mean / (1.0 + nodes.smoothing)
-            add(source_name(light.name), entry, power, light.photon_weight, light.light_group)
+        lights = LightList()
+        lights.add_light_objects(scene, geometry, self.light_maps, radius)
         refuse_too_many(
             scene, geometry, materials, lambda triangles: self._light_tree.refuse(len(scene.lights), triangles)
         )
-        self.emitters.build(scene, geometry, materials, resolve, links)
-        entry = LIGHT.zeros(1)[0]
-        entry["kind"], entry["flags"] = LightShape.MESH, int(RayVisibility.ALL)
-        entry["max_bounces"] = UNLIMITED_BOUNCES
-        add(SURFACES, entry, self.emitters.power)
+        self.emitters.build(scene, geometry, materials, resolve, lights.links)
+        lights.add_surfaces(self.emitters.power)
         if not keep_world:
             self.environment.build(scene.world, scene.images, materials)
-        entry = LIGHT.zeros(1)[0]
         self.world_visibility = scene.world.visibility
-        entry["kind"], entry["flags"] = LightShape.WORLD, int(self.world_visibility)
-        world_bounces = UNLIMITED_BOUNCES if self.environment.is_even else scene.world.max_bounces
-        entry["max_bounces"] = world_bounces
-        power = 4 * math.pi**2 * radius**2 * self.environment.mean_radiance
-        add(ENVIRONMENT, entry, power, group=scene.world.light_group)
-        shown_through = scene.lights if names[-1:] == [ENVIRONMENT] else []
+        lights.add_world(scene, self.environment, radius)
+        shown_through = scene.lights if lights.has_world else []
         self._portals = Portals(shown_through, self.environment, radius, self._portals)
         if self._portals.power > 0.0:
-            # The same light as the world's, which all but its photons take by that one: so it has no power.
-            through = entry.copy()
-            through["flags"] |= LightFlag.THROUGH_PORTALS
-            add(ENVIRONMENT, through, np.full(3, self._portals.power), group=scene.world.light_group)
-            powers[-1] = 0.0
-        if not entries:
-            # As in an animation whose lights go out: the picture is black, as Cycles' is.
-            log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
-            entries, powers, weights, groups = [entry], [1.0], [1.0], [""]
-        if sum(weights) <= 0:
-            raise SceneError("all lights have a photon weight of 0; raise that of one")
-
-        kept = self.table if keep_learned and names == self._names else None
-        self._names, self._powers, self._power = names, powers, sum(powers)
-        # By power, half of it evenly: what does not choose by the point, and MIS weights.
-        shining = np.array(powers) > 0
-        selection = np.where(shining, 0.5 * np.array(powers) / sum(powers) + 0.5 / shining.sum(), 0.0)
-        table = np.array(entries, LIGHT.dtype)
-        table["selection_probability"] = selection
-        table["selection_end"] = np.cumsum(selection)
-        table["selection_end"][-1] = 1.0
-        self.has_falloff = bool(
-            (table["flags"] & LightFlag.SOFT).any() or table["falloff"].any() or table["smoothing"].any()
-        )
-        cut = LightFlag.SOFT | LightFlag.HOLDS_SURFACES
-        self.are_cut = bool(((table["flags"] & cut) == cut).any())
-        self.table, self._photons, self._most_photons = table, photons, scene.photon_count
-        if kept is not None and np.array_equal(kept["kind"], table["kind"]):
-            for column in _LEARNED:
-                table[column] = kept[column]
-            self._upload_table()
-        else:
-            self._weights = np.array(weights)
-            self._first_powers = np.array([*powers[:-1], powers[-1] or self._portals.power])
-            self.begin(photons)
+            lights.add_portals(scene, self.environment, self._portals.power)
+        lights.complete(scene, self.environment)
+        self._allocate_first(lights, scene.photon_count, photons, keep_learned)
         targets = caustic_targets(scene, geometry)
         self.target_count = len(targets)
         self.targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
-        self._list_groups(scene, [*groups, *(placed.instance.light_group for placed in geometry.placements)])
-        self.links_lights = links.any
-        self.links.upload(links.records)
-        sets = links.records["light_sets"]
+        self._list_groups(scene, [*lights.groups, *(placed.instance.light_group for placed in geometry.placements)])
+        self.links.upload(lights.links.records)
+        sets = lights.links.records["light_sets"]
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
-        self._light_tree.build(table, self.emitters.leaves, self.emitters.order, sets)
+        self._light_tree.build(self.table, self.emitters.leaves, self.emitters.order, sets)
         self.emitters.leaves = LIGHT_NODE.zeros(0)  # as large as the triangles themselves
-        self.parameters = {
+        self.parameters = self._parameters(scene, geometry, lights)
+
+    def _allocate_first(self, lights: LightList, max_photons: int, photons: int, keep_learned: bool) -> None:
+        """Take the table of the lights, with so many photons; what was learned is kept for the same lights."""
+        table, names = lights.table, self._list.names
+        kept = self.table if keep_learned and lights.names == names else None
+        self._list = lights
+        self.table, self._max_photons = table, max_photons
+        soft, cut = LightFlag.SOFT, LightFlag.SOFT | LightFlag.HOLDS_SURFACES
+        self.has_falloff = bool((table["flags"] & soft).any() or table["falloff"].any() or table["smoothing"].any())
+        self.are_cut = bool(((table["flags"] & cut) == cut).any())
+        self.limits_bounces = bool((table["max_bounces"] < UNLIMITED_BOUNCES).any())
+        if kept is not None and np.array_equal(kept["kind"], table["kind"]):
+            for column in _LEARNED:
+                table[column] = kept[column]
+            require(self._allocation).photon_count = photons
+            self._upload_table()
+        else:
+            powers = np.array([*lights.powers[:-1], lights.powers[-1] or self.portals.power])
+            self._allocation = PhotonAllocation(powers, np.array(lights.weights), self.portals.power > 0.0)
+            self.begin(photons)
+
+    def _parameters(self, scene: Scene, geometry: Geometry, lights: LightList) -> dict[str, object]:
+        """Return the values of LIGHT_PARAMETERS."""
+        kinds = self.table["kind"]
+        return {
             "scene_center": geometry.center,
-            "scene_radius": radius,
+            "scene_radius": self.scene_radius,
             "world_radiance": self.environment.radiance,
-            "light_count": len(entries),
+            "light_count": len(self.table),
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
             "emissive_triangle_count": self.emitters.count,
             "gathers_lights": shadows_are_of_all(scene),
-            "world_selection": float(selection[table["kind"] == LightShape.WORLD].sum()),
+            "world_selection": float(lights.selection[kinds == LightShape.WORLD].sum()),
             "environment_irradiance": 2 * math.pi * float(np.mean(np.abs(self.environment.mean_radiance))),
-            "mesh_light": int(np.argmax(table["kind"] == LightShape.MESH)),
-            "world_light": int(np.argmax(table["kind"] == LightShape.WORLD)),
+            "mesh_light": int(np.argmax(kinds == LightShape.MESH)),
+            "world_light": int(np.argmax(kinds == LightShape.WORLD)),
             **self._light_tree.parameters,
-            **self._portals.parameters,
-            "portal_light": len(entries) - 1,
-            "links_lights": self.links_lights,
+            **self.portals.parameters,
+            "portal_light": len(self.table) - 1,
+            "links_lights": lights.links.any,
             "world_visibility": int(self.world_visibility),
-            "world_bounces": world_bounces,
+            "world_bounces": UNLIMITED_BOUNCES if self.environment.is_even else scene.world.max_bounces,
         }
-        self.limits_bounces = bool((table["max_bounces"] < UNLIMITED_BOUNCES).any())
 
     def _list_groups(self, scene: Scene, names: list[str]) -> None:
         """names: of the light groups of the lights and the instances."""
@@ -322,12 +257,11 @@ class Lights(BufferSet):
             self.group_table.release()
 
     def begin(self, photons: int) -> None:
-        """Forget what photons were good for, as before the first iteration, and share so many among the lights."""
-        even = np.ones(len(self._weights))
-        self._share_photons(even, self._most_photons)
-        self.guide.build(self.table, self._most_photons)
-        if photons != self._most_photons:
-            self._share_photons(even, photons)
+        """Forget what photons contributed, as before the first iteration, and allocate so many to the lights."""
+        self._allocate(self._max_photons)
+        self.guide.build(self.table, self._max_photons)
+        if photons != self._max_photons:
+            self._allocate(photons)
         self._upload_table()
 
     def _upload_table(self) -> None:
@@ -335,22 +269,20 @@ class Lights(BufferSet):
         records[: len(self.table)], records[len(self.table) :] = self.table, self.portals.records
         self._lights.upload(records)
 
-    def _share_photons(self, contributions: np.ndarray, photons: int, fraction: float = FIRST_PHOTON_FRACTION) -> None:
-        """fraction: of the world's photons, those that leave through portals, where there are any."""
-        self._photons = photons
-        powers, worth = self._first_powers, self._weights * contributions
-        if self.portals.power > 0.0:
-            shares = photon_shares(powers[:-1], worth[:-1])
-            shares = np.append(shares[:-1], shares[-1] * np.array([1.0 - fraction, fraction]))
+    def _allocate(self, photons: int, contributions: np.ndarray | None = None) -> None:
+        """Allocate photons to the lights by what the guide has learned of them, or before it has learned anything."""
+        allocation = require(self._allocation)
+        if contributions is None:
+            counts = allocation.allocate(photons)
         else:
-            shares = photon_shares(powers, worth)
-        counts = share_out(shares, photons)
+            fraction = allocation.portal_fraction(self.guide.even_contribution)
+            counts = allocation.allocate(photons, contributions, fraction)
         self.table["photon_count"] = counts
         self.table["first_photon"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
 
     def tally(self, photons: Mapping[str, Bindable], slots: int) -> None:
-        """Count what an iteration's photons were good for, once they have been splatted (Guide.tally)."""
-        self.guide.tally(photons, slots, self._photons)
+        """Tally what an iteration's photons contributed, once they have been splatted (Guide.tally)."""
+        self.guide.tally(photons, slots, require(self._allocation).photon_count)
 
     def learn(self, photons: int) -> float:
         """Learn from the tallies where to send the photons of the next iterations, so many in each.
@@ -360,35 +292,29 @@ class Lights(BufferSet):
         """
         weights, contributed = self.guide.learn()
         before = self.table["photon_count"] @ contributed[:, 0]
-        self._share_photons(weights, photons, self._portal_fraction)
+        self._allocate(photons, weights)
         self._upload_table()
         return float(self.table["photon_count"] @ contributed[:, 1] / before)
 
     def restore(self, tallies: np.ndarray, learned: np.ndarray | None, photons: int) -> None:
-        """Know what the guide of this scene's lights knew (Guide.restore, which tells what is raised) when the last
-        iteration had so many photons."""
+        """Restore what the guide of this scene's lights had learned when the last iteration had so many photons.
+
+        Raises as Guide.restore does."""
         weights = self.guide.restore(tallies, learned)
         if weights is not None:
-            self._share_photons(weights, photons, self._portal_fraction)
+            self._allocate(photons, weights)
             self._upload_table()
-
-    @property
-    def _portal_fraction(self) -> float:
-        """photon_fraction, as the guide knows it."""
-        if not self.portals.power > 0.0:
-            return 0.0
-        return photon_fraction(self._first_powers[-2:] * self.guide.even_contribution[-2:])
 
     @property
     def photon_flux(self) -> float:
         """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
-        return self._power / self._photons
+        return sum(self._list.powers) / require(self._allocation).photon_count
 
     @property
     def world_photon_flux(self) -> float:
         """Mean flux of those of the world's photons that contribute, W, the channels' mean; 0 where there are none."""
         worlds = np.flatnonzero((self.table["kind"] == LightShape.WORLD) & (self.table["photon_count"] > 0))
         return sum(
-            self._powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
+            self._list.powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
             for index in worlds
         )

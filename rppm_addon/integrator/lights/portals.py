@@ -33,7 +33,7 @@ point, ``portal_fraction`` of the environment shadow rays are sampled by the por
 
 FIRST_PHOTON_FRACTION = 0.5
 """Fraction of the world's photons that leave through portals as long as nothing has been learned."""
-_LEAST_PHOTONS, _MOST_PHOTONS = 0.1, 0.9
+_MIN_PHOTONS, _MAX_PHOTONS = 0.1, 0.9
 _SHADOW_RAYS = 0.9
 """Fraction of environment shadow rays that are sampled through portals; the others find other openings."""
 _BRIGHT = 8.0
@@ -140,7 +140,7 @@ def photon_fraction(contributing_power: np.ndarray) -> float:
     power that contributes, of all that comes to the scene and of what passes portals. What other openings let in keeps
     photons."""
     everywhere, through = contributing_power
-    return float(np.clip(through / max(everywhere, 1e-300), _LEAST_PHOTONS, _MOST_PHOTONS))
+    return float(np.clip(through / max(everywhere, 1e-300), _MIN_PHOTONS, _MAX_PHOTONS))
 
 
 def power_through(passed: np.ndarray, radiance: float) -> float:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light sources: their names in statistics, and their shares of the photons."""
+"""Light sources: their names in statistics, and their fractions of the photons."""
 
 import numpy as np
 
@@ -13,12 +13,13 @@ def source_name(light: str) -> str:
 
 
 _REGARDLESS_OF_POWER = 0.125
-"""Fraction of the photons that is shared among sources however little power they have. Beside a world of a thousand
-meters around, or a sun, lamps in a room would have no photon, though all that the others send misses the room."""
+"""Fraction of the photons that is distributed among sources however little power they have. Beside a world of a
+thousand meters around, or a sun, lamps in a room would have no photon, though all that the others send misses the
+room."""
 
 
-def photon_shares(powers: np.ndarray, contributions: np.ndarray) -> np.ndarray:
-    """Shares of the photons, (n,) summing to 1, or zeros where no source is to have any.
+def photon_fractions(powers: np.ndarray, contributions: np.ndarray) -> np.ndarray:
+    """Return the fractions of the photons, (n,) summing to 1, or zeros where no source is to have any.
 
     ``powers`` in W; ``contributions``: what a photon of each source is worth, by the user's weight and by what earlier
     ones contributed, in any unit.

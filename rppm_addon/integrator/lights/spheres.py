@@ -8,7 +8,7 @@ from ...scene.meshes import Mesh
 from ...scene.scene import Scene
 from ..surfaces.geometry import Geometry
 
-_MOST_TRIANGLES = 1 << 17
+_MAX_TRIANGLES = 1 << 17
 """Meshes of more are taken to reach into a sphere that their box reaches into."""
 
 
@@ -25,7 +25,7 @@ def holds_surfaces(light: Light, scene: Scene, geometry: Geometry) -> bool:
         met = np.flatnonzero(_distances_to_boxes(center, geometry.boxes[:, 0], geometry.boxes[:, 1]) <= radius)
     for number in met.tolist():
         mesh = scene.meshes[geometry.placements[number].instance.mesh]
-        if mesh.triangle_count > _MOST_TRIANGLES or _reaches(mesh, geometry.matrices[number], center, radius):
+        if mesh.triangle_count > _MAX_TRIANGLES or _reaches(mesh, geometry.matrices[number], center, radius):
             return True
     return False
 

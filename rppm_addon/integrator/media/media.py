@@ -7,7 +7,8 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.scene import Scene
 from ..camera_paths.importons import Importons
 from ..common.active_paths import ActivePaths
@@ -26,14 +27,14 @@ StorageBlock("MediaOfSources", "uint media_of_sources[];")
 Record("FindMediaParameters", camera_position="vec3", box_count="uint")
 Record("EnterMediaParameters", camera_position="vec3", box_count="uint", has_camera="uint")
 
-_MOST_BOXES = 32
+_MAX_BOXES = 32
 """Boxes that points are looked for in; what is more lies in the last together."""
 
 
 class Media(Stage):
     """Paths begin in the media that surround the camera or their light (shaders/media/crossings.glsl).
 
-    Where no material has a volume there are neither programs nor buffers, and nothing is done.
+    Their programs are compiled when there is a box, as they depend on the acceleration structure.
     """
 
     memory_group = "media"
@@ -44,23 +45,28 @@ class Media(Stage):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._library = library
-        self._has_media, self._has_texels = sizes.has_media, sizes.has_texels
+        self._has_texels = sizes.has_texels
         self._scene: Scene | None = None
         self._box_count = 0
 
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where materials have a volume."""
+        return sizes.has_media
+
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
-        if self._is_used(context, iteration):
+        if self._find_media(context, iteration):
             self._enter(context, photons.active, photons.blocks, "media/enter_photons.comp")
 
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
-        if self._is_used(context, iteration):
+        if self._find_media(context, iteration):
             self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")
 
-    def _is_used(self, context: StageContext, iteration: Iteration) -> bool:
+    def _find_media(self, context: StageContext, iteration: Iteration) -> bool:
         """Find where media are, and what is in them, for a new scene; true where there are any."""
-        if not self._has_media:
+        if not self.is_on:
             return False
         if self._scene is not context.scene or iteration.number == 1:
             self._scene = context.scene
@@ -105,8 +111,8 @@ def _boxes(scene: Scene, materials: frozenset[int]) -> np.ndarray:
         low += list(lows[good])
         high += list(highs[good])
     boxes = np.stack([low, high], axis=1) if low else np.zeros((0, 2, 3))
-    if len(boxes) > _MOST_BOXES:
-        rest = boxes[_MOST_BOXES - 1 :]
+    if len(boxes) > _MAX_BOXES:
+        rest = boxes[_MAX_BOXES - 1 :]
         united = np.stack([rest[:, 0].min(axis=0), rest[:, 1].max(axis=0)])
-        boxes = np.concatenate([boxes[: _MOST_BOXES - 1], united[None]])
+        boxes = np.concatenate([boxes[: _MAX_BOXES - 1], united[None]])
     return boxes.astype(np.float32)

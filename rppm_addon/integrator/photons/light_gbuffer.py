@@ -18,11 +18,12 @@ from collections.abc import Mapping
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, DrawProgram, ProgramLibrary
+from ...gl.programs.program import Bindable, DrawProgram
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.require import require
 from ..lights.light_records import LightShape
@@ -37,11 +38,11 @@ LIGHT_VIEW = Record(
     up="vec3",
     tip_distance="float",
     forward="vec3",
-    least_depth="float",
+    min_depth="float",
 )
 """View of a light through a window whose half extent at depth 1 is ``tangent``. Depths begin at the tip,
-``tip_distance`` before the center; ``margin`` is how far texels are widened; nearer than ``least_depth`` float rounding
-tells nothing of directions. Lengths in meters."""
+``tip_distance`` before the center; ``margin`` is how far texels are widened; nearer than ``min_depth`` float rounding
+leaves no precision to directions. Lengths in meters."""
 
 Record(
     "LightGBufferParameters",
@@ -61,13 +62,13 @@ before the horizon, and where their numbers end in the list of all (where they a
 StorageBlock("TexelTriangles", "uint texel_triangles[];")
 _COUNTS = Record("LightGBufferCounts", jobs="uint", triangles="uint", unused0="uint", unused1="uint")
 
-MOST_LIGHTS = 16
+MAX_LIGHTS = 16
 """Maximum number of lights that have views. The lights with the most photons have them; photons of the others are
 traced."""
 
 _COARSEST_SIDE, _FINEST_SIDE, _TEXELS = 128, 512, 1 << 19
 """Texels along a view's side, and of all views where these allow it."""
-_MOST_TESTS = 1 << 24
+_MAX_TESTS = 1 << 24
 """Views times triangles: beyond this only the first light has views."""
 _PICTURE_SIDE = 4096
 _WIDEST_MARGIN = 1.0 / 128.0
@@ -105,7 +106,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
         # Over the scene's depth rays leave their texel's cone so far.
         slope = sine / max(float(light["cosine_cone"]), 1e-3) + 1.0 / _SUN_DISTANCE
         views["margin"] = scene_radius * (1.02 * slope + _ROUNDING)
-        views["least_depth"] = 0.5 * tip
+        views["min_depth"] = 0.5 * tip
     elif kind in (LightShape.POINT, LightShape.SPOT):
         cone = math.acos(max(-1.0, 1.0 - float(light["spread_scale"]))) if kind == LightShape.SPOT else math.pi
         narrow = cone < _WIDEST_CONE
@@ -116,7 +117,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
         rounding = _ROUNDING * farthest
         views["center"], views["tangent"] = light["position"], tangent
         views["margin"] = 1.01 * math.hypot(1.0, tangent) * float(light["radius"]) + rounding
-        views["least_depth"] = 16.0 * rounding
+        views["min_depth"] = 16.0 * rounding
     else:
         return LIGHT_VIEW.zeros(0)
     views["right"], views["up"], views["forward"] = (np.array(axes) for axes in zip(*looks))
@@ -133,21 +134,21 @@ class LightGBuffer(BufferSet):
     """The views of a scene's point lights, spots and suns. Buffers are kept between scenes and grow with need."""
 
     remedy = "trace the first photon hits"
-    _views = StorageBuffer("light views", LIGHT_VIEW)
-    _ranges = StorageBuffer("views by light", "uvec2")
-    _texels = StorageBuffer("light G-buffer", LIGHT_TEXEL)
-    _triangles = StorageBuffer("triangles of the light G-buffer", "uint")
-    _jobs = StorageBuffer("light G-buffer jobs", "uvec4", header=_COUNTS)
+    _views = StorageBuffer("light views", LIGHT_VIEW, block="LightViews")
+    _ranges = StorageBuffer("views by light", "uvec2", block="LightViewRanges")
+    _texels = StorageBuffer("light G-buffer", LIGHT_TEXEL, block="LightTexels")
+    _triangles = StorageBuffer("triangles of the light G-buffer", "uint", block="TexelTriangles")
+    _jobs = StorageBuffer("light G-buffer jobs", "uvec4", header=_COUNTS, block="LightJobs")
+    _list_jobs = ComputeShader("photons/light_gbuffer/list_jobs.comp")
+    _allocate = ComputeShader("photons/light_gbuffer/allocate.comp")
+    _first_hits = ComputeShader("photons/light_gbuffer/first_hits.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
-        self._list_jobs = library.compute("photons/light_gbuffer/list_jobs.comp")
         self._nearest = library.draw("photons/light_gbuffer/jobs.vert", "photons/light_gbuffer/nearest.frag")
         self._count = library.draw("photons/light_gbuffer/jobs.vert", "photons/light_gbuffer/count.frag")
-        self._allocate = library.compute("photons/light_gbuffer/allocate.comp")
         self._list = library.draw("photons/light_gbuffer/jobs.vert", "photons/light_gbuffer/list.frag")
-        self._first_hits = library.compute("photons/light_gbuffer/first_hits.comp")
         self._framebuffer: moderngl.Framebuffer | None = None
         self._parameters: dict[str, int] = {}
         self._side = 0
@@ -158,9 +159,9 @@ class LightGBuffer(BufferSet):
         scene_radius: of the sphere that photons from suns come through, meters. Raises DeviceError.
         """
         ranges, found, count = np.zeros((len(lights), 2), np.uint32), [LIGHT_VIEW.zeros(0)], 0
-        for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MOST_LIGHTS]:
+        for index in np.argsort(-lights["photon_count"].astype(np.int64), kind="stable")[:MAX_LIGHTS]:
             views = light_views(lights[index], scene_center, scene_radius)
-            if count and (count + len(views)) * geometry.triangle_count > _MOST_TESTS:
+            if count and (count + len(views)) * geometry.triangle_count > _MAX_TESTS:
                 break
             ranges[index] = count, len(views)
             found.append(views)
@@ -187,35 +188,31 @@ class LightGBuffer(BufferSet):
             if self._framebuffer is not None:
                 self.disown(self._framebuffer)
             self._framebuffer = self.own(self._context.moderngl.empty_framebuffer(size))
-        blocks = {
-            "LightViews": self._views.buffer,
-            "LightTexels": self._texels.buffer,
-            "Triangles": geometry.triangles.buffer,
-        }
-        jobs = self._find_jobs(views * geometry.triangle_count, 5 * geometry.triangle_count // 4, blocks)
-        blocks["LightJobs"] = self._jobs.buffer
-        self._draw(self._nearest, jobs, blocks)
-        self._draw(self._count, jobs, blocks)
-        counted = {name: blocks[name] for name in ("LightViews", "LightTexels", "LightJobs")}
-        self._allocate.run(views * self._side**2, counted, self._parameters)
+        jobs = self._find_jobs(views, geometry)
+        self._draw(self._nearest, jobs, geometry)
+        self._draw(self._count, jobs, geometry)
+        self._allocate.run(views * self._side**2, self.blocks, self._parameters)
         self._triangles.require_items(int(self._jobs.read(_COUNTS.dtype, 1)["triangles"][0]))
-        self._draw(self._list, jobs, {**blocks, "TexelTriangles": self._triangles.buffer})
+        self._draw(self._list, jobs, geometry)
 
-    def _find_jobs(self, threads: int, expected: int, blocks: dict[str, moderngl.Buffer]) -> int:
+    def _find_jobs(self, views: int, geometry: Geometry) -> int:
         """List where triangles may be seen; how many such jobs there are."""
-        jobs = expected
+        jobs = 5 * geometry.triangle_count // 4
         while True:
             self._jobs.require_items(jobs)
             capacity = self._jobs.capacity
             self._jobs.write(_COUNTS.zeros(1))
             self._list_jobs.run(
-                threads, {**blocks, "LightJobs": self._jobs.buffer}, self._parameters | {"job_capacity": capacity}
+                views * geometry.triangle_count,
+                {**geometry.blocks, **self.blocks},
+                self._parameters | {"job_capacity": capacity},
             )
             jobs = int(self._jobs.read(_COUNTS.dtype, 1)["jobs"][0])
             if jobs <= capacity:
                 return jobs
 
-    def _draw(self, program: DrawProgram, jobs: int, blocks: dict[str, moderngl.Buffer]) -> None:
+    def _draw(self, program: DrawProgram, jobs: int, geometry: Geometry) -> None:
+        blocks = {**geometry.blocks, **self.blocks}
         program.draw(require(self._framebuffer), 6 * jobs, blocks, self._parameters)
 
     def find(
@@ -233,15 +230,6 @@ class LightGBuffer(BufferSet):
         left.begin(count)
         self._first_hits.run(
             count,
-            {
-                **blocks,
-                "LightViewRanges": self._ranges.buffer,
-                "LightViews": self._views.buffer,
-                "LightTexels": self._texels.buffer,
-                "TexelTriangles": self._triangles.buffer,
-                "Rays": rays,
-                "Hits": hits,
-                "KeptPaths": left.buffer,
-            },
+            {**blocks, **self.blocks, "Rays": rays, "Hits": hits, "KeptPaths": left.buffer},
             {"side": self._side, "count": count},
         )

@@ -4,7 +4,8 @@
 from collections.abc import Mapping
 
 from ...gl.buffers.records import Record
-from ...gl.programs.programs import Bindable, ProgramLibrary
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..device_scene.stage_context import StageContext
 

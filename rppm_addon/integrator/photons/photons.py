@@ -7,7 +7,8 @@ from ...gl.buffer_sets import Part, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import GROUP_SIZE, ProgramLibrary
+from ...gl.programs.program import GROUP_SIZE
+from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight
 from ..camera_paths.subsurface import Subsurface
 from ..common.active_paths import ActivePaths, PathList

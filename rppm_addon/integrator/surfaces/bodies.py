@@ -8,7 +8,7 @@ import numpy as np
 from ...scene.meshes import Mesh, MeshShape
 from ...scene.scene import Scene
 
-_MOST_TRIANGLES = 1 << 20
+_MAX_TRIANGLES = 1 << 20
 """Largest meshes that are looked at: sorting the edges of more would take seconds."""
 
 
@@ -44,7 +44,7 @@ def warn_of_open_bodies(scene: Scene, filled: Collection[int], checked: dict[int
         mesh = scene.meshes[instance.mesh]
         if not set(filled).intersection(instance.materials) or mesh.shape is not MeshShape.SURFACE:
             continue
-        if not 0 < mesh.triangle_count <= _MOST_TRIANGLES:
+        if not 0 < mesh.triangle_count <= _MAX_TRIANGLES:
             continue
         key = id(mesh)
         if key not in checked:

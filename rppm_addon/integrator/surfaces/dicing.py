@@ -18,7 +18,7 @@ _OFFSCREEN = 4.0
 """How much longer edges may be that the camera does not see."""
 _PERCENTILE = 90.0
 """Percentage of the edges that are to be as short as is asked for."""
-_MOST_LOOKED_AT = 64
+_MAX_LOOKED_AT = 64
 """Instances of a mesh that tell how large it is seen."""
 
 
@@ -34,7 +34,7 @@ def parts_of_edges(mesh: Mesh, instances: list[Instance], camera: Camera, rate: 
         lengths = np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=-1).ravel()
         return max(1.0, float(np.percentile(lengths, _PERCENTILE)) / dicing.edge_length)
     found = [1.0]
-    for instance in instances[:_MOST_LOOKED_AT]:
+    for instance in instances[:_MAX_LOOKED_AT]:
         placed = ends @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
         pixels, seen = _pixels_of_edges(placed, camera)
         some, scale = (pixels[seen], 1.0) if seen.any() else (pixels, _OFFSCREEN)

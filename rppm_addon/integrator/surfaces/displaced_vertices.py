@@ -8,7 +8,8 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
-from ...gl.programs.programs import ComputeProgram, ProgramLibrary
+from ...gl.programs.program import ComputeProgram
+from ...gl.programs.programs import ProgramLibrary
 from ...gl.programs.sources import CompileError
 from ...materials.tables import MaterialTables, first_line
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
@@ -112,7 +113,7 @@ class DisplacedVertices(BufferSet):
         self._vertices.upload(records)
         self._offsets.require_items(len(records))
         buffers = {
-            **materials.buffers,
+            **materials.blocks,
             **self._surface_attributes.blocks,
             "Triangles": self._geometry.triangles.buffer,
             "Attributes": self._geometry.attributes.buffer,

@@ -79,8 +79,8 @@ class Displacement:
     def displaced(self, scene: Scene, materials: MaterialTables, renewed: bool) -> Scene:
         """The scene with its meshes displaced, and their shapes at other times; itself where nothing is displaced.
 
-        materials: built for the scene; renewed: since the scene before. Programs that the driver refuses are told in
-        scene.warnings. Raises DeviceError.
+        materials: built for the scene; renewed: since the scene before. Programs that the driver refuses are reported
+        in scene.warnings. Raises DeviceError.
         """
         self.warnings = []
         self._slots = {index: (index, graph.keeps_normals) for index, graph in materials.displacing.items()}

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers.buffers import GrowingBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
@@ -19,6 +18,7 @@ from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
+from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
 
 log = logging.getLogger(__name__)
 
@@ -31,40 +31,16 @@ _ONE_SIDED = 1 << 12
 """In the codes of triangles, above the sets: rays meet it from outside only."""
 Constants("TriangleCodes", ONE_SIDED=_ONE_SIDED)
 
-INSTANCE_ENTRY = Record(
-    "InstanceEntry",
-    row0="vec4",
-    row1="vec4",
-    row2="vec4",
-    pivot="vec3",
-    first_triangle="uint",
-    mesh_triangle="uint",
-    mesh_corner="uint",
-    mesh_vertex="uint",
-    mesh_uv="uint",
-    first_slot="uint",
-    slot_count="uint",
-    set_code="float",
-)
 Record("GatherParameters", fallback_point="vec3", first_triangle="uint", triangle_count="uint", instance_count="uint")
 
 
-_MESH_ARRAYS = {
-    "Positions": ("positions", np.dtype(np.float32)),
-    "CornerVertices": ("corner_vertices", np.dtype(np.uint32)),
-    "CornerNormals": ("corner_normals", np.dtype(np.float32)),
-    "CornerUvs": ("corner_uv", np.dtype(np.float32)),
-    "TriangleCorners": ("triangle_corners", np.dtype(np.uint32)),
-    "TriangleSlots": ("triangle_slots", np.dtype(np.uint32)),
-}
-"""Buffers that hold arrays of all meshes: the member of Mesh, and the type in the buffer."""
 _STARTS = {
     "mesh_triangle": "triangle_corners",
     "mesh_corner": "corner_vertices",
     "mesh_vertex": "positions",
     "mesh_uv": "corner_uv",
 }
-"""Members of InstanceEntry that tell where a mesh's part of such an array begins."""
+"""Members of InstanceEntry that are where a mesh's part of such an array begins."""
 _FAR_VERTICES = 128.0
 """Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 _BLOCK = 256
@@ -149,7 +125,7 @@ class Geometry(BufferSet):
     what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
-    remedy = "lower the subdivision or the children of particles (Simplify does so for all), or decimate meshes"
+    remedy = GatherInputs.remedy
     triangles = StorageBuffer("world triangles", TRIANGLE_VERTICES, texel_bytes=16, block="Triangles")
     attributes = StorageBuffer("triangle attributes", TRIANGLE_ATTRIBUTES, texel_bytes=16, block="Attributes")
 
@@ -157,12 +133,8 @@ class Geometry(BufferSet):
         super().__init__(context, library)
         self._context = context
         self._gather = library.compute("surfaces/geometry/gather.comp")
-        self._inputs = {
-            name: self.own(GrowingBuffer(context, f"geometry {name}", self.remedy, texel_bytes=16))
-            for name in ("Instances", "SlotMaterials", *_MESH_ARRAYS)
-        }
-        self._arrays: dict[str, list[np.ndarray]] = {}
-        """Arrays that lie one behind the other in a buffer, by the buffer's name."""
+        self._inputs = self.own(GatherInputs(context, library))
+        """No part of the set: other programs than gather.comp do not read them."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
         self.triangle_count = 0
@@ -209,7 +181,7 @@ class Geometry(BufferSet):
         slots: list[int] = []
         if instances:
             for field, member in _STARTS.items():
-                entries[field] = _starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
+                entries[field] = part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
             entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
             placed = self.matrices
             if scene.world_origin is not None:
@@ -225,11 +197,11 @@ class Geometry(BufferSet):
         boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
         self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
         self._enclose(boxes[which], swept)
-        self._upload_meshes(meshes)
-        self._inputs["Instances"].upload(entries)
-        self._inputs["SlotMaterials"].upload(np.array(slots or [default_material], np.uint32))
+        self._inputs.upload_meshes(meshes)
+        self._inputs.instances.upload(entries)
+        self._inputs.slot_materials.upload(np.array(slots or [default_material], np.uint32))
         self._require_triangles(instances, lengths)
-        inputs = {name: buffer.buffer for name, buffer in self._inputs.items()}
+        inputs = self._inputs.blocks
         for triangles, attributes in zip(
             self.triangles.ranges(self.triangle_count), self.attributes.ranges(self.triangle_count), strict=True
         ):
@@ -282,21 +254,6 @@ class Geometry(BufferSet):
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
 
-    def _upload_meshes(self, meshes: list[Mesh]) -> None:
-        """Write the arrays that were not written to their places before, together where they lie together."""
-        for name, (member, dtype) in _MESH_ARRAYS.items():
-            arrays = [array for mesh in meshes if (array := getattr(mesh, member)) is not None]
-            before = self._arrays.pop(name, [])  # should an upload fail
-            buffer = self._inputs[name]
-            offsets = _starts([array.size * dtype.itemsize for array in arrays])
-            made_anew = buffer.require(int(offsets[-1]))
-            stands = not made_anew and [a.shape for a in before] == [a.shape for a in arrays]
-            changed = [index for index, array in enumerate(arrays) if not (stands and array is before[index])]
-            for run in _runs(changed):
-                data = [_flat(arrays[index], dtype) for index in run]
-                buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
-            self._arrays[name] = arrays
-
 
 def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> str:
     """Names of those whose instances have the most triangles, so many each, and how many all of them have."""
@@ -332,29 +289,5 @@ def _packed_sets(linking: LightLinking | None) -> int:
     return 0 if linking is None else linking.receiver_light_set | linking.blocker_shadow_set << 6
 
 
-def _starts(lengths: list[int]) -> np.ndarray:
-    """(n + 1,) where parts of these lengths begin, and their end."""
-    return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
-
-
 def _length(array: np.ndarray | None) -> int:
     return 0 if array is None else len(array)
-
-
-def _flat(array: np.ndarray, dtype: np.dtype) -> np.ndarray:
-    """(n,) of the type in the buffer, without a copy where the bits are the same."""
-    flat = np.ascontiguousarray(array).reshape(-1)
-    if flat.dtype.kind in "iu" and flat.dtype.itemsize == dtype.itemsize and dtype.kind == "u":
-        return flat.view(dtype)
-    return flat.astype(dtype, copy=False)
-
-
-def _runs(indices: list[int]) -> list[list[int]]:
-    """Ascending numbers, those together that follow each other."""
-    runs: list[list[int]] = []
-    for index in indices:
-        if runs and runs[-1][-1] + 1 == index:
-            runs[-1].append(index)
-        else:
-            runs.append([index])
-    return runs

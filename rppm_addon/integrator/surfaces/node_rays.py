@@ -17,8 +17,9 @@ from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ComputeProgram, ProgramLibrary
-from ...materials.compiler.compiler import MOST_NODE_RAYS, NodeRayCounts
+from ...gl.programs.program import Bindable, ComputeProgram
+from ...gl.programs.programs import ProgramLibrary
+from ...materials.compiler.compiled_graph import MAX_NODE_RAYS, NodeRayCounts
 from ..acceleration.acceleration_structure import AccelerationStructure
 
 Record(
@@ -63,7 +64,7 @@ Constants(
     QUERY_LEVEL=0xFFF,
     QUERY_LEVEL_SHIFT=4,
     QUERY_SAMPLES_SHIFT=16,
-    MOST_NODE_RAYS=MOST_NODE_RAYS,
+    MAX_NODE_RAYS=MAX_NODE_RAYS,
 )
 _SAMPLES_AT_ONCE = 8
 """llvmpipe ends all loops of a thread after 65535 rounds in all."""

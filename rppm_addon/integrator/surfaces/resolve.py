@@ -12,9 +12,10 @@ from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.programs import Bindable, ComputeProgram, ProgramLibrary
+from ...gl.programs.program import Bindable, ComputeProgram
+from ...gl.programs.programs import ProgramLibrary
 from ...gl.programs.sources import CompileError
-from ...materials.compiler.compiler import NEUTRAL_TEXT, NodeRayCounts
+from ...materials.compiler.compiled_graph import NEUTRAL_TEXT, NodeRayCounts
 from ...materials.tables import MaterialTables, first_line
 from ...scene.scene import Scene
 from ..acceleration.acceleration_structure import AccelerationStructure
@@ -128,7 +129,7 @@ class Resolve(BufferSet):
 
     def build(self, scene: Scene, geometry: Geometry, materials: MaterialTables) -> None:
         """Take a scene whose geometry and materials are built; programs that are not known yet are compiled.
-        What the camera tells nodes follows by set_view.
+        What nodes read of the camera follows by set_view.
 
         A program that the driver refuses is replaced by that of a gray surface, with a warning in scene.warnings.
         Raises DeviceError when the device cannot hold the attributes.
@@ -136,7 +137,7 @@ class Resolve(BufferSet):
         for text in materials.programs:
             self._library.expect(_STAGE, _inserts(text))
         self._programs = [self._program(text, scene, materials) for text in materials.programs]
-        self._ray_counts = [materials.rays[text] for text in materials.programs]
+        self._ray_counts = [materials.programs[text].rays for text in materials.programs]
         self._ray_stride = max((counts.places for counts in self._ray_counts), default=0)
         self._casts_rays = any(counts.casts for counts in self._ray_counts)
         self._traversal = None
@@ -144,7 +145,7 @@ class Resolve(BufferSet):
         self._buffers = {
             **geometry.blocks,
             **self._surface_attributes.blocks,
-            **materials.buffers,
+            **materials.blocks,
         }
 
     def set_accelerator(self, traversal: AccelerationStructure) -> None:
@@ -183,7 +184,7 @@ class Resolve(BufferSet):
         try:
             return self._library.compute(_STAGE, inserts=_inserts(text))
         except CompileError as error:
-            for name in materials.users[text]:
+            for name in materials.programs[text].names:
                 reason = first_line(error)
                 scene.warn(f'Material "{name}": the driver does not compile its nodes ({reason}); it is gray')
             return self._library.compute(_STAGE, inserts=_inserts(NEUTRAL_TEXT))
@@ -202,7 +203,7 @@ class Resolve(BufferSet):
     ) -> None:
         """Fill the closures of active paths; inactive rays and misses give closures without a triangle.
 
-        The paths tell nodes and objects that ask what kind of rays these are; without any, all is seen and the rays
+        From the paths, nodes and objects read what kind of rays these are; without any, all is seen and the rays
         are of no kind. has_adjoint_queries: the same hits are seen once more, from where photons go; what chance
         decides is decided anew.
         """
@@ -244,9 +245,9 @@ class Resolve(BufferSet):
             },
         )
 
-    def _resolve(self, blocks: dict[str, moderngl.Buffer], active: ActivePaths, told: dict[str, object]) -> None:
+    def _resolve(self, blocks: dict[str, moderngl.Buffer], active: ActivePaths, extra: dict[str, object]) -> None:
         buffers = {**self._buffers, **blocks}
-        parameters = {**self._parameters, **told, "ray_stride": 0, "ray_level": 0, "ray_levels": 0}
+        parameters = {**self._parameters, **extra, "ray_stride": 0, "ray_level": 0, "ray_levels": 0}
         closures = blocks["Closures"]
 
         # A list of paths is laid out as the order of a single program's hits.
@@ -267,16 +268,16 @@ class Resolve(BufferSet):
         buffers: dict[str, Bindable],
         parameters: dict,
     ) -> dict[str, int]:
-        """Have the nodes of a program ask and be answered, level by level; returns what parameters then tell it."""
+        """Have the nodes of a program ask and be answered, level by level; returns further parameters for it."""
         if self._traversal is None:
             return {"ray_stride": 0}
         counts = self._ray_counts[parameters["program"]]
-        told = {"ray_stride": self._ray_stride, "ray_levels": counts.levels}
+        extra = {"ray_stride": self._ray_stride, "ray_levels": counts.levels}
         traced = {name: parameters[name] for name in ("seed", "iteration", "program")}
         traced["segment"] = parameters["segment"] + (ADJOINT_SEGMENT_OFFSET if parameters["has_adjoint_queries"] else 0)
         for level in range(counts.levels):
-            told["ray_level"] = level
-            program.run_indirect(order, arguments, buffers, {**parameters, **told})
+            extra["ray_level"] = level
+            program.run_indirect(order, arguments, buffers, {**parameters, **extra})
             self._node_rays.trace(
                 self._node_rays.program(self._traversal, self._casts_rays),
                 order,
@@ -285,7 +286,7 @@ class Resolve(BufferSet):
                 counts,
                 {**traced, "ray_stride": self._ray_stride, "ray_level": level},
             )
-        return {**told, "ray_level": counts.levels}
+        return {**extra, "ray_level": counts.levels}
 
     def _order_by_program(self, buffers: dict[str, Bindable], active: ActivePaths) -> moderngl.Buffer:
         self._order.require_items(_RANGE_SIZE * len(self._programs) + active.most)

@@ -47,9 +47,9 @@ SHADING_INSTANCE = Record(
     terminator_flags="uint",
     shape="uint",
 )
-"""An instance as nodes see it: the rows of its world-to-object matrix, and what Object Info and Particle Info tell;
+"""An instance as nodes see it: the rows of its world-to-object matrix, and the values of Object Info and Particle Info;
 the words of the bits of the light sets that it shines on; and of its shadow terminator the geometry offset and what the
-flags of its closures tell; ``shape``: of its mesh (MeshShapes)."""
+flags of its closures say; ``shape``: of its mesh (MeshShapes)."""
 SPHERE_REACHES = [1.14563412, 1.03787541, 1.00954588, 1.00239101]
 """By how often an icosahedron is subdivided, how far from the middle its vertices lie where it has the area of the unit
 sphere, as those of points have it."""

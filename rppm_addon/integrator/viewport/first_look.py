@@ -6,7 +6,7 @@ from collections.abc import Callable
 import moderngl
 import numpy as np
 
-from ...gl.buffers.buffers import GrowingBuffer
+from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
@@ -18,8 +18,8 @@ from ...scene.errors import DeviceError
 from ...scene.meshes import Instance, RayVisibility
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_members
-from ..common.band import MOST_RASTER_PIXELS
-from ..common.camera_view import camera_view
+from ..common.band import MAX_RASTER_PIXELS
+from ..common.camera_view import CAMERA_VIEW, camera_view
 from ..surfaces.geometry import Geometry
 
 PLAIN_SURFACE = Record(
@@ -37,8 +37,12 @@ HEADLIGHT = 0.6
 _DARKEST_SKY, _BRIGHTEST_SKY = 0.05, 0.6
 
 
-class FirstLook:
+class FirstLook(BufferSet):
     """Draws scenes with one small program."""
+
+    _surfaces = StorageBuffer("plain surfaces", PLAIN_SURFACE, block="PlainSurfaces")
+    _opacities = StorageBuffer("opacities of instances", "float", block="InstanceOpacities")
+    _camera = StorageBuffer("camera of the first look", CAMERA_VIEW, 1, block="Camera")
 
     def __init__(
         self,
@@ -48,16 +52,14 @@ class FirstLook:
         displaced: Callable[[Scene], Scene] = lambda scene: scene,
         centered: Callable[[Scene], Scene] = lambda scene: scene,
     ) -> None:
-        """geometry: of the mapper that renders the scenes later, which then has it on the device already; displaced:
-        gives a scene with the meshes that the mapper has in place of its own, as far as that is known; centered: gives
-        a scene with the places that the mapper has."""
+        """geometry: that of the mapper that renders the scenes later, which then has it on the device already;
+        displaced: gives a scene with the meshes that the mapper has in place of its own, as far as that is known;
+        centered: gives a scene with the places that the mapper has."""
+        super().__init__(context, library)
         self._context = context
         self._draw = library.draw("viewport/first_look/first_look.vert", "viewport/first_look/first_look.frag")
         self._geometry = geometry
         self._displaced, self._centered = displaced, centered
-        self._surfaces = GrowingBuffer(context, "plain surfaces")
-        self._opacities = GrowingBuffer(context, "opacities of instances")
-        self._camera = GrowingBuffer(context, "camera of the first look")
         self._shown: Scene | None = None
         self._blends = False
         """Whether something is neither opaque nor a hole."""
@@ -83,7 +85,7 @@ class FirstLook:
         SceneError for a camera that sees nothing.
         """
         width, height = scene.camera.resolution
-        if max(width, height) > MOST_RASTER_PIXELS:
+        if max(width, height) > MAX_RASTER_PIXELS:
             raise DeviceError(f"{width} x {height} pixels are more than devices draw; make the viewport smaller")
         scene = self.take(scene)
         self._camera.upload(camera_view(scene.camera, 0, height, (0.0, 0.0)))
@@ -118,13 +120,6 @@ class FirstLook:
     def _draw_surfaces(
         self, framebuffer: moderngl.Framebuffer, scene: Scene, camera: moderngl.Buffer, drawn: int
     ) -> None:
-        buffers = {
-            "Camera": camera,
-            "Triangles": self._geometry.triangles.buffer,
-            "Attributes": self._geometry.attributes.buffer,
-            "PlainSurfaces": self._surfaces.buffer,
-            "InstanceOpacities": self._opacities.buffer,
-        }
         brightest = max(float(self._sky.max()), 1e-9)
         sky = self._sky * (np.clip(brightest * scene.exposure, _DARKEST_SKY, _BRIGHTEST_SKY) / brightest)
         if not sky.any():
@@ -135,7 +130,7 @@ class FirstLook:
         self._draw.draw(
             framebuffer,
             3 * self._geometry.triangle_count,
-            buffers,
+            {**self._geometry.blocks, **self.blocks, "Camera": camera},
             {"sky": sky, "headlight": HEADLIGHT, "exposure": scene.exposure, "drawn": drawn},
             state=moderngl.DEPTH_TEST | (moderngl.BLEND if blended else moderngl.NOTHING),
         )
@@ -157,11 +152,6 @@ class FirstLook:
             self._sky = self._sky * plain_surface(scene.world.graph, scene.images).emission
         self._shown = scene
         return scene
-
-    def release(self) -> None:
-        """Give the buffers back, but for the geometry, which is somebody else's as well."""
-        for buffer in (self._surfaces, self._opacities, self._camera):
-            buffer.release()
 
 
 def _opacity(instance: Instance) -> float:

@@ -3,7 +3,7 @@
 
 Only light by rays is filtered: that of photons, all caustics among it, is left as it is. Edges of surfaces stop the
 filter by depth and normal, textures by albedo, and shadows by how much brighter they are than noise can make them. As
-samples come, noise tells less and less, and from MOST_SAMPLES on nothing is filtered.
+samples come, noise tells less and less, and from MAX_SAMPLES on nothing is filtered.
 """
 
 import moderngl
@@ -41,7 +41,7 @@ StorageBlock("Guides", "vec4 guides[];")
 
 STEPS = (1, 2, 4, 8, 16)
 """Pixels between the taps of a round."""
-MOST_SAMPLES = 256
+MAX_SAMPLES = 256
 """Whose picture is filtered."""
 _WHOLE_SAMPLES = 64
 """Up to which the filtered picture is shown alone."""
@@ -50,7 +50,7 @@ _IMAGES = "images of the noise filter"
 
 def strength(samples: int, of: int) -> float:
     """The part that the filtered picture has in what is shown after ``samples`` of ``of``: 0 at the end."""
-    end = min(of, MOST_SAMPLES)
+    end = min(of, MAX_SAMPLES)
     return min(1.0, max(0.0, (end - samples) / max(end - min(_WHOLE_SAMPLES, end // 2), 1)))
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures that a viewport shows of a film: filtered while samples are few, enlarged while pixels are few, and combined
-with the last view's picture while that tells more."""
+with the last view's picture while that has less noise."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,9 +23,9 @@ from ..common.viewport_demands import ViewportDemands
 from ..film.film import Film, exposed
 from .first_look import FirstLook
 from .noise_filter import NoiseFilter, strength
-from .reprojection import HISTORY_ENDS, MOST_HISTORY, NewPicture, Reprojection, SeenPicture, can_move
+from .reprojection import HISTORY_ENDS, MAX_HISTORY, NewPicture, Reprojection, SeenPicture, can_move
 
-MOST_SHADOW_RAYS = 4
+MAX_SHADOW_RAYS = 4
 """Maximum number of shadow rays of a vertex in coarse pictures. Up to this, a vertex has about one for each pixel of
 the full resolution that its pixel stands for."""
 
@@ -35,7 +35,7 @@ _SEEN_PICTURES = (SeenPicture,) * 3
 
 
 def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -> ViewportDemands:
-    """Return what a picture of a scene demands of iterations, at a share ``level`` of the full side length.
+    """Return what a picture of a scene demands of iterations, at a fraction ``level`` of the full side length.
 
     materials: one for each of the scene's, those that others stand in for as yet. Programs are to be ready for them:
     else they would be compiled when these come, while nothing new is shown.
@@ -50,7 +50,7 @@ def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -
     )
     if len(scene.settings.passes) == 1:  # a pass is shown as it is
         return demands
-    return replace(demands, shadow_rays=min(MOST_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
+    return replace(demands, shadow_rays=min(MAX_SHADOW_RAYS, round(1.0 / level**2)), is_filtered=True)
 
 
 def expected_bytes(sizes: StageSizes) -> dict[str, int]:
@@ -96,8 +96,8 @@ class ViewportPictures:
                 return exposed(noise_filter.read(), scene.exposure)
         if not moves:
             return None
-        share = width / scene.camera.resolution[0]
-        new = NewPicture(picture, width, height, share * samples)
+        fraction = width / scene.camera.resolution[0]
+        new = NewPicture(picture, width, height, fraction * samples)
         self._composed = self._reprojection.compose(scene, new, fade)
         return self._composed
 
@@ -118,7 +118,7 @@ class ViewportPictures:
         self._to_keep = None
         movable = can_move(shown) and self._holds(shown)
         if movable and combined.shape[1::-1] == shown.camera.resolution and len(shown.settings.passes) != 1:
-            self._reprojection.keep(shown, combined, MOST_HISTORY)
+            self._reprojection.keep(shown, combined, MAX_HISTORY)
 
     def _holds(self, scene: Scene) -> bool:
         """Whether the device holds a picture of the view in one buffer, as all of what is done here asks for."""

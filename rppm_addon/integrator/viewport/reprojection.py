@@ -14,6 +14,7 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, StorageBuffer, sum_by_name
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
+from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_members
@@ -27,14 +28,14 @@ Record(
     new_height="uint",
     exposure="float",
     new_count="float",
-    most_history="float",
-    most_specular_history="float",
+    max_history="float",
+    max_specular_history="float",
     way_of_origins="vec3",
 )
 
-MOST_HISTORY = 8.0
+MAX_HISTORY = 8.0
 """Samples that the last picture counts at most."""
-_MOST_SPECULAR_HISTORY = 0.5
+_MAX_SPECULAR_HISTORY = 0.5
 """And where surfaces are specular: what these show does not stay in its place as the view moves."""
 HISTORY_ENDS = 32
 """Samples of full resolution after which a picture stands for itself."""
@@ -61,10 +62,10 @@ class SeenPicture(BufferSet):
     """A view's surfaces, and the picture that was shown of it."""
 
     remedy = "make the viewport smaller"
-    camera = StorageBuffer("camera of a viewport", CAMERA_VIEW, 1)
-    picture = StorageBuffer("viewport picture", "vec4", film_pixels)
+    camera = StorageBuffer("camera of a viewport", CAMERA_VIEW, 1, block="Camera")
+    picture = StorageBuffer("viewport picture", "vec4", film_pixels, block="Picture")
     """Scene-linear, exposed, premultiplied alpha."""
-    counts = StorageBuffer("samples of the viewport picture", "float", film_pixels)
+    counts = StorageBuffer("samples of the viewport picture", "float", film_pixels, block="Counts")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -91,6 +92,22 @@ class SeenPicture(BufferSet):
         texel = sum(components * int(dtype[-1]) for components, dtype in _TEXTURES) + _DEPTH_BYTES
         return super().expected_bytes(sizes) | {_SURFACES: texel * film_pixels(sizes)}
 
+    @property
+    def blocks(self) -> dict[str, Bindable]:
+        """BufferSet.blocks, with the textures of the surfaces, for the picture that is composed."""
+        return {**super().blocks, "surfaces": self.surfaces, "numbers": self.numbers, "looks": self.looks}
+
+    @property
+    def last_blocks(self) -> dict[str, Bindable]:
+        """Storage blocks and textures for the last picture, which is moved into another view."""
+        return {
+            "last_surfaces": self.surfaces,
+            "last_numbers": self.numbers,
+            "LastCamera": self.camera.buffer,
+            "LastPicture": self.picture.buffer,
+            "LastCounts": self.counts.buffer,
+        }
+
     def look(self, first_look: FirstLook, scene: Scene) -> None:
         """Have the surfaces of a scene's view, of this size. Raises SceneError for a camera that sees nothing."""
         if self._seen is not None and self._seen.camera is scene.camera and same_places(self._seen, scene):
@@ -113,10 +130,10 @@ class SeenPicture(BufferSet):
 
 def same_places(a: Scene, b: Scene) -> bool:
     """Whether nothing has moved and every surface is the same."""
-    return _share(a, b, "meshes", "instances", "materials")
+    return _have_alike(a, b, "meshes", "instances", "materials")
 
 
-def _share(a: Scene, b: Scene, *names: str) -> bool:
+def _have_alike(a: Scene, b: Scene, *names: str) -> bool:
     lists = ((getattr(a, name), getattr(b, name)) for name in names)
     return all(x is y or same_members(x, y) for x, y in lists)
 
@@ -126,7 +143,7 @@ def differ_by_view(a: Scene, b: Scene) -> bool:
     settings = ("film_transparent", "passes", "direct_light", "use_final_gather")
     return (
         same_places(a, b)
-        and _share(a, b, "lights", "images")
+        and _have_alike(a, b, "lights", "images")
         and a.world is b.world
         and a.exposure == b.exposure
         and a.camera.orthographic == b.camera.orthographic
@@ -135,7 +152,7 @@ def differ_by_view(a: Scene, b: Scene) -> bool:
 
 
 def can_move(scene: Scene) -> bool:
-    """Whether a rasterized view tells what the scene's pictures show."""
+    """Whether a rasterized view shows what the scene's pictures show."""
     return is_rasterized(scene.camera) and scene.shutter is None
 
 
@@ -195,31 +212,18 @@ class Reprojection:
     def _run(
         self, seen: SeenPicture, last: SeenPicture | None, scene: Scene, new: NewPicture | None, fade: float
     ) -> None:
-        history = 0.0 if last is None else MOST_HISTORY * fade
+        history = 0.0 if last is None else MAX_HISTORY * fade
         last = last or seen  # something has to be bound
         self._compose.run(
             seen.size[0] * seen.size[1],
-            {
-                "surfaces": seen.surfaces,
-                "numbers": seen.numbers,
-                "looks": seen.looks,
-                "last_surfaces": last.surfaces,
-                "last_numbers": last.numbers,
-                "Camera": seen.camera.buffer,
-                "LastCamera": last.camera.buffer,
-                "LastPicture": last.picture.buffer,
-                "LastCounts": last.counts.buffer,
-                "NewPicture": last.picture.buffer if new is None else new.buffer,
-                "Picture": seen.picture.buffer,
-                "Counts": seen.counts.buffer,
-            },
+            {**seen.blocks, **last.last_blocks, "NewPicture": last.picture.buffer if new is None else new.buffer},
             {
                 "new_width": 0 if new is None else new.width,
                 "new_height": 0 if new is None else new.height,
                 "exposure": scene.exposure,
                 "new_count": 0.0 if new is None else new.samples,
-                "most_history": history,
-                "most_specular_history": min(history, _MOST_SPECULAR_HISTORY),
+                "max_history": history,
+                "max_specular_history": min(history, _MAX_SPECULAR_HISTORY),
                 "way_of_origins": seen.world_offset - last.world_offset,
             },
         )

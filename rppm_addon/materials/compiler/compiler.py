@@ -6,29 +6,24 @@ constants in a buffer, so graphs that differ in those only have the same text an
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
-import numpy as np
-
-from ...scene.errors import RppmError
 from ...scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 from ...scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ...scene.passes import PassKind, RenderPass
 from ..dispersion import disperses
 from ..nodes import KINDS
 from ..nodes.node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
-from ..traits.node_rays import RAYCAST
 from ..traits.subsurface import has_subsurface
 from ..traits.transparency import asks_for_shadow_rays
+from .bump import Bump
+from .compiled_graph import CompiledGraph, GraphError, NodeRayCounts, Resource
+from .graph_constants import GraphConstants, read_constant, socket_constants
 from .pieces import in_pieces
-
-LUMINANCE = (0.2126391, 0.7151691, 0.0721928)
-"""Rec.709: how a color becomes a number, measured in Cycles."""
+from .ray_levels import RayLevels
 
 MIX_SHADER, ADD_SHADER, BUMP = "mix_shader", "add_shader", "bump"
-"""Kinds that the compiler itself knows: two share out weights, one evaluates its input three times."""
+"""Kinds that the compiler itself knows: two distribute weights, one evaluates its input three times."""
 
 _IMPLICIT = {
     "normal": "surface.normal",
@@ -38,66 +33,12 @@ _IMPLICIT = {
 """GLSL expressions for inputs whose default is a name, by that name."""
 
 
-class GraphError(RppmError):
-    """A graph is not what the kinds of its nodes say."""
-
-
-@dataclass(frozen=True)
-class Resource:
-    """A constant that is known only when all materials of a scene are laid out."""
-
-    what: str
-    """table, image or attribute."""
-    node: int
-    name: str = ""
-    """Name of an attribute that is not the node's own."""
-
-
-@dataclass(frozen=True)
-class NodeRayCounts:
-    """Counts of the rays that the nodes of a text ask for."""
-
-    places: int = 0
-    """Number of places for what rays find, for each hit."""
-    levels: int = 0
-    """How many times rays are traced: those of a node may depend on what those of another found."""
-    samples: int = 0
-    """Rays of a place, at most."""
-    casts: bool = False
-    """Whether there are rays from any place, as of Raycast nodes."""
-
-    def united(self, other: "NodeRayCounts") -> "NodeRayCounts":
-        """Return the counts for graphs that have their text in common."""
-        return replace(self, samples=max(self.samples, other.samples))
-
-
-MOST_NODE_RAYS = 128
-"""Samples of a node, as in Blender."""
-
-
-@dataclass
-class CompiledGraph:
-    """GLSL for a structure of graphs, and the constants of one graph."""
-
-    text: str
-    constants: list[float | Resource] = field(default_factory=list)
-    rays: NodeRayCounts = NodeRayCounts()
-
-
-_DEEPEST_BUMP = 2
+_MAX_BUMP_DEPTH = 2
 """Each bump whose height depends on the normal of another asks for that three times: 3^2 are enough."""
 
-MOST_CALLS = 8192
-"""Nodes that a graph may compute, those of a bump's height as often as they are asked: drivers compile more for many
-minutes."""
-
-_LARGEST = float(np.finfo(np.float32).max)
-
-NEUTRAL_TEXT = """void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {
-    builder.closure.diffuse = vec3(0.8);
-}
-"""
-"""GLSL that stands in for a graph that cannot be compiled: a gray surface."""
+MAX_CALLS = 8192
+"""Largest number of nodes that a graph may compute, those of a bump's height as often as they are asked: drivers
+compile more for many minutes."""
 
 
 class _Scope:
@@ -126,10 +67,9 @@ class _Compiler:
         self._on_round_shapes = on_round_shapes
         self._abbe_number = abbe_number
         self._traces_rays = traces_rays
-        self._rays = NodeRayCounts()
         self._aovs = aovs
-        self._constants: list[float | Resource] = []
-        self._places: dict[tuple[int, str], int] = {}
+        self._constants = GraphConstants()
+        self._rays = RayLevels(graph)
         self._sources: dict[str, None] = {}
         self._functions: list[str] = []
         self._heights: dict[tuple[int, int], str] = {}
@@ -137,11 +77,11 @@ class _Compiler:
         self._calls = 0
 
     def compile(self) -> CompiledGraph:
-        scope = _Scope(ray_level=self._level_of_normal)
+        scope = _Scope(ray_level=self._rays.of_normal)
         text = '#include "materials/round_shapes.glsl"\n' if self._on_round_shapes else ""
         if self._abbe_number is not None and disperses(self._graph):
             text += '#include "materials/dispersion.glsl"\n'
-            place = self._place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
+            place = self._constants.place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
             scope.lines.append(f"inverse_abbe_number = constant_float(first + {place}u);")
         if asks_for_shadow_rays(self._graph):
             text += '#include "materials/shadow_rays.glsl"\n'
@@ -164,24 +104,25 @@ class _Compiler:
             + "".join(f"    {line}\n" for line in in_pieces(scope.lines))
             + "}\n"
         )
-        return CompiledGraph(text + aovs, self._constants, self._rays if self._traces_rays else NodeRayCounts())
+        rays = self._rays.counts if self._traces_rays else NodeRayCounts()
+        return CompiledGraph(text + aovs, self._constants.values, rays)
 
     def compile_displacement(self) -> CompiledGraph:
         assert self._graph.displacement is not None
         scope = _Scope()
         value = self._converted(scope, self._graph.displacement, SocketType.VECTOR)
         function = _function("vec3", "material_displacement", scope.lines, value)
-        return CompiledGraph("".join([*self._includes(), *self._functions, function]), self._constants)
+        return CompiledGraph("".join([*self._includes(), *self._functions, function]), self._constants.values)
 
     def _includes(self) -> list[str]:
-        rays = ['#include "materials/node_rays.glsl"\n'] if self._rays.places and self._traces_rays else []
+        rays = ['#include "materials/node_rays.glsl"\n'] if self._rays.counts.places and self._traces_rays else []
         return rays + [f'#include "materials/nodes/{source}"\n' for source in sorted(self._sources)]
 
     def _aov_function(self) -> str:
         """The function that writes the passes of AOV Output nodes, and what it needs; nothing of a graph that has
         none."""
         stride = sum(len(entry.channels) for entry in self._aovs)
-        scope, written, place = _Scope(ray_level=self._level_of_normal), list[str](), 0
+        scope, written, place = _Scope(ray_level=self._rays.of_normal), list[str](), 0
         if self._graph.normal is not None:
             scope.lines.append("surface.normal = material_normal(surface, first);")
         for entry in self._aovs:
@@ -202,9 +143,8 @@ class _Compiler:
         if isinstance(value, Link):
             return self._converted(scope, value, kind)
         node = ShaderNode("aov_output", output.name)
-        place = len(self._constants)
-        self._constants.extend(self._constants_of(node, "value" if kind is FLOAT else "color", value, kind))
-        return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
+        name = "value" if kind is FLOAT else "color"
+        return read_constant(self._constants.append(socket_constants(node, name, value, kind)), kind)
 
     def _number(self, index: int) -> int:
         """Names go by the order of use, so that nodes that nothing uses leave the text as it is."""
@@ -235,17 +175,17 @@ class _Compiler:
             if node.kind == MIX_SHADER:
                 factor = f"f{self._number(index)}"
                 scope.lines.append(f"float {factor} = clamp({self._input(scope, index, 'fac', FLOAT, 0.5)}, 0.0, 1.0);")
-                shares = ((first, f"{weight} * (1.0 - {factor})"), (second, f"{weight} * {factor}"))
+                parts = ((first, f"{weight} * (1.0 - {factor})"), (second, f"{weight} * {factor}"))
             elif node.kind == ADD_SHADER:
-                shares = ((first, weight), (second, weight))
+                parts = ((first, weight), (second, weight))
             else:
                 self._call(scope, index, weight)
                 continue
-            for shader, share in shares:
+            for shader, part in parts:
                 if isinstance(shader, Link):
                     self._check_order(index, shader)
                     self._check_shader(shader)
-                    weights.setdefault(shader.node, []).append(share)
+                    weights.setdefault(shader.node, []).append(part)
 
     def _check_shader(self, link: Link) -> None:
         if self._kind(link.node).outputs.get(link.output) is not SHADER:
@@ -266,25 +206,8 @@ class _Compiler:
             return self._converted(scope, value, kind)
         if isinstance(value, str) and value in _IMPLICIT:
             return _IMPLICIT[value]
-        place = self._place((index, name), [*self._constants_of(self._graph.nodes[index], name, value, kind)])
-        return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
-
-    def _constants_of(self, node: ShaderNode, name: str, value: Any, kind: SocketType) -> list[float]:
-        try:
-            numbers = [_finite(v) for v in np.atleast_1d(value)[:3]]
-        except (TypeError, ValueError) as error:
-            raise GraphError(f'node "{node.name}" ({node.kind}): its {name} is no number but {value!r}') from error
-        if len(numbers) not in (1, 3):
-            raise GraphError(f'node "{node.name}" ({node.kind}): its {name} has {len(numbers)} numbers')
-        if kind is FLOAT:
-            return numbers if len(numbers) == 1 else [_finite(np.dot(LUMINANCE, numbers))]
-        return numbers * 3 if len(numbers) == 1 else numbers
-
-    def _place(self, key: tuple[int, str], values: list[float | Resource]) -> int:
-        if key not in self._places:
-            self._places[key] = len(self._constants)
-            self._constants.extend(values)
-        return self._places[key]
+        constants = socket_constants(self._graph.nodes[index], name, value, kind)
+        return read_constant(self._constants.place((index, name), constants), kind)
 
     def _converted(self, scope: _Scope, link: Link, wanted: SocketType) -> str:
         given = self._kind(link.node).outputs.get(link.output)
@@ -328,9 +251,9 @@ class _Compiler:
         """Compute all outputs of a node, or add a shader with a weight."""
         node, kind = self._graph.nodes[index], self._kind(index)
         self._calls += 1
-        if self._calls > MOST_CALLS:
+        if self._calls > MAX_CALLS:
             raise GraphError(
-                f"it has more than {MOST_CALLS} nodes, which drivers compile for many minutes; bake them to a texture, "
+                f"it has more than {MAX_CALLS} nodes, which drivers compile for many minutes; bake them to a texture, "
                 "or take some out"
             )
         if node.kind == BUMP:
@@ -345,10 +268,9 @@ class _Compiler:
         function, literals = _function_of(node, kind)
         arguments += literals
         for what in kind.resources:
-            place = self._place((index, f"<{what}>"), [Resource(what, index)])
-            arguments.append(f"constant_index(first + {place}u)")
+            arguments.append(self._constants.index((index, f"<{what}>"), Resource(what, index)))
         if kind.traces_rays:
-            arguments += self._ray_arguments(scope, index)
+            arguments += self._rays.arguments(index, scope.ray_level)
         for name, (socket, default) in kind.inputs.items():
             arguments.append(self._input(scope, index, name, socket, default))
         values = {
@@ -358,39 +280,6 @@ class _Compiler:
             scope.lines.append(f"{kind.outputs[name].glsl} {value};")
         scope.lines.append(f"{function}({', '.join([*arguments, *values.values()])});")
         scope.known[index] = values
-
-    @cached_property
-    def _ray_depths(self) -> list[int]:
-        """By node, how many nodes that trace rays follow one from another up to it."""
-        depths: list[int] = []
-        for index, node in enumerate(self._graph.nodes):
-            links = [link.node for link in node.inputs.values() if isinstance(link, Link)]
-            below = max((depths[link] for link in links if 0 <= link < index), default=0)
-            depths.append(below + (node.kind in KINDS and KINDS[node.kind].traces_rays))
-        return depths
-
-    @property
-    def _level_of_normal(self) -> int:
-        normal = self._graph.normal
-        return 0 if normal is None or not 0 <= normal.node < len(self._ray_depths) else self._ray_depths[normal.node]
-
-    def _ray_arguments(self, scope: _Scope, index: int) -> list[str]:
-        """The first place of what a node's rays find, and its level."""
-        place, level = self._rays.places, scope.ray_level + self._ray_depths[index] - 1
-        node, kind = self._graph.nodes[index], self._kind(index)
-        count = 1
-        if "samples" in kind.inputs:
-            samples = node.inputs.get("samples", kind.inputs["samples"][1])
-            count = MOST_NODE_RAYS  # of what other nodes give, no more than the most
-            if isinstance(samples, int | float):
-                count = int(np.clip(_finite(samples), 1, MOST_NODE_RAYS))
-        self._rays = NodeRayCounts(
-            place + kind.ray_places,
-            max(self._rays.levels, level + 1),
-            max(self._rays.samples, count),
-            self._rays.casts or node.kind == RAYCAST,
-        )
-        return [f"{place}u", f"{level}u"]
 
     def _bump(self, scope: _Scope, index: int) -> None:
         """The height is a function of the place, which is asked at three of them."""
@@ -402,7 +291,7 @@ class _Compiler:
         displaced = self._graph.nodes[index].attribute == UNDISPLACED
         # As in Cycles: what has the same height everywhere hands its normal on, of whatever length.
         level = not displaced and not isinstance(self._graph.nodes[index].inputs.get("height"), Link)
-        if level or scope.depth >= _DEEPEST_BUMP:
+        if level or scope.depth >= _MAX_BUMP_DEPTH:
             scope.lines.append(f"vec3 {value} = {self._input(scope, index, 'normal', *kind.inputs['normal'])};")
             return
         function = f"height_{number}_{scope.depth}"
@@ -411,50 +300,26 @@ class _Compiler:
             height = self._input(inner, index, "height", *kind.inputs["height"])
             self._functions.append(_function("float", function, inner.lines, height))
             self._heights[index, scope.depth] = function
-        strength, distance, normal = (
-            self._input(scope, index, name, *kind.inputs[name]) for name in ("strength", "distance", "normal")
+        strength, distance, normal, filter_width = (
+            self._input(scope, index, name, *kind.inputs[name])
+            for name in ("strength", "distance", "normal", "filter_width")
         )
-        width = self._input(scope, index, "filter_width", *kind.inputs["filter_width"])
         _, (invert,) = _function_of(self._graph.nodes[index], kind)
-        there, before, ways, after, along = "surface_beside(surface, way)", [], [], [], "along"
-        if displaced:  # as Cycles: where the surface was, in object space
-            layer, normals = (
-                f"constant_index(first + {self._place((index, f'<{name}>'), [Resource('attribute', index, name)])}u)"
-                for name in (UNDISPLACED, SMOOTH_NORMALS)
-            )
-            self._sources["undisplaced.glsl"] = None
-            before = [f"surface.normal = undisplaced_normal(surface, {normals});"]
-            ways = [f"  vec3 way_{axis} = undisplaced_way(surface, along_{axis}, {layer});" for axis in "xy"]
-            ways += ["  float stretch = undisplaced_stretch(surface, along_x, way_x, way_y);"]
-            there, along = f"undisplaced_beside(surface, way, stretch, {layer})", "way"
-            normal = f"unit_to_object(surface, {normal})"
-            after = [f"{value} = unit_to_world(surface, {value});"]
-        scope.lines += [
-            *before,
-            f"vec3 {value};",
-            f"{{ vec3 along_x, along_y, heights = vec3(0.0); bump_offsets(surface, {width}, along_x, along_y);",
-            *ways,
-            # A loop, so that drivers need not compile the height three times.
-            "  for (int k = 0; k < 3; ++k) {",
-            "    vec3 way = k == 0 ? vec3(0.0) : k == 1 ? along_x : along_y;",
-            f"    float height = {function}({there}, first);",
-            "    if (k == 0) heights.x = height; else if (k == 1) heights.y = height; else heights.z = height;",
-            "  }",
-            f"  node_bump(surface, {invert}, {strength}, {distance}, {normal}, {along}_x, {along}_y,",
-            f"            heights.y - heights.x, heights.z - heights.x, {value}); }}",
-            *after,
-        ]
+        bump = Bump(function, strength, distance, normal, filter_width, invert)
+        if not displaced:
+            scope.lines += bump.statements(value)
+            return
+        layer, normals = (
+            self._constants.index((index, f"<{name}>"), Resource("attribute", index, name))
+            for name in (UNDISPLACED, SMOOTH_NORMALS)
+        )
+        self._sources["undisplaced.glsl"] = None
+        scope.lines += bump.undisplaced_statements(value, layer, normals)
 
 
 def _function(result: str, name: str, lines: list[str], value: str) -> str:
     body = "".join(f"    {line}\n" for line in in_pieces(lines))
     return f"{result} {name}(Surface surface, uint first) {{\n{body}    return {value};\n}}\n"
-
-
-def _finite(value: float) -> float:
-    """A number as a float of single precision; 0 where it is not finite."""
-    value = float(value)
-    return float(np.clip(value, -_LARGEST, _LARGEST)) if np.isfinite(value) else 0.0
 
 
 def _function_of(node: ShaderNode, kind: NodeKind) -> tuple[str, list[str]]:

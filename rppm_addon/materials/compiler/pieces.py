@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 
 PIECE = 32
 """Statements, at least: 12 and less take longer."""
-MOST_PIECES = 32
+MAX_PIECES = 32
 """Maximum number of pieces of a function: llvmpipe's work on loops grows with the square of their number."""
-_MOST_HELD = 16
+_MAX_HELD = 16
 """Constants a statement that are held in an array; nodes that others were made between may be far apart."""
 _BEGIN = "for (uint once = 0u; once < uint(first != 0xFFFFFFFFu); ++once) {"
 """``first``, where the material's constants begin, is known to all functions of nodes."""
@@ -36,10 +36,10 @@ def in_pieces(lines: Sequence[str]) -> list[str]:
             statements.append([f"{name} = {value};"])
     if len(statements) <= 2 * PIECE:
         return list(lines)
-    length = max(PIECE, -(-len(statements) // MOST_PIECES))
+    length = max(PIECE, -(-len(statements) // MAX_PIECES))
     starts = range(0, len(statements), length)
     pieces = [[line for statement in statements[k : k + length] for line in statement] for k in starts]
-    ranges = [_constants(piece, _MOST_HELD * length) for piece in pieces]
+    ranges = [_constants(piece, _MAX_HELD * length) for piece in pieces]
     declared.append(f"float held[{max(1, *(count for _, count in ranges))}];")
     for piece, (lowest, count) in zip(pieces, ranges, strict=True):
         declared += [_BEGIN, *(f"    {line}" for line in _with_held_constants(piece, lowest, count)), "}"]

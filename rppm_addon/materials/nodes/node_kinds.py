@@ -53,7 +53,7 @@ class NodeKind:
     one."""
     fallbacks: dict[str, str] = field(default_factory=dict)
     """Replacement that is rendered in place of the node, by the value that an option has, or "" for any: users are
-    told."""
+    warned."""
     function_option: str = ""
     """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
     passed: drivers take long to fold a choice among many at every call."""

@@ -24,7 +24,7 @@ SUBSURFACE_METHODS = ("RANDOM_WALK", "RANDOM_WALK_SKIN", "RANDOM_WALK_LEGACY", "
 """As in Blender 5.2; what is RANDOM_WALK before that is RANDOM_WALK_LEGACY there."""
 
 KINDS = {
-    # Both share out weights and have no GLSL; their shaders are the inputs "shader" and "shader_001".
+    # Both distribute weights and have no GLSL; their shaders are the inputs "shader" and "shader_001".
     "mix_shader": _shader("shader", {"fac": (FLOAT, 0.5)}),
     "add_shader": _shader("shader"),
     # Of a volume, which has no surface, the "emission" is its absorption coefficient in 1/m.

@@ -14,9 +14,9 @@ from ..nodes.node_kinds import SocketType
 GLASS_OPACITY = 0.3
 """Opacity of the part of a surface that lets light through by refraction: what is behind it has to be seen."""
 _GRAY = np.full(3, 0.8)
-_MOST_PIXELS = 64
+_MAX_PIXELS = 64
 """Along a side of an image, of which the mean is taken."""
-_MOST_NODES = 200
+_MAX_NODES = 200
 """Looked at in a graph, those that are used twice counted twice: ways through a graph can be without number."""
 _GLOSSY = {"bsdf_glossy", "bsdf_metallic"}
 _REFRACTIVE = {"bsdf_glass", "bsdf_refraction"}
@@ -37,9 +37,9 @@ class PlainSurface:
     emission: np.ndarray
     """(3,) float64 radiance, W/(m^2 sr)."""
     transparent: float
-    """Share of what is behind that is seen unbent."""
+    """Fraction of what is behind that is seen unbent."""
     glass: float
-    """Share of what lets light through by refraction."""
+    """Fraction of what lets light through by refraction."""
     texture: "PlainTexture | None" = None
     """Texture whose mean the color is, at least in part; None if there is none."""
 
@@ -73,7 +73,7 @@ class _Mean:
     def __init__(self, graph: NodeGraph, images: Sequence[Image]) -> None:
         self._graph = graph
         self._images = images
-        self._nodes_left = _MOST_NODES
+        self._nodes_left = _MAX_NODES
         self._weight = self._metallic = self._roughness = self._transparent = self._glass = 0.0
         self._texture: PlainTexture | None = None
         self._color, self._emission = np.zeros(3), np.zeros(3)
@@ -98,8 +98,8 @@ class _Mean:
             return
         inputs = [node.inputs.get(name) for name in ("shader", "shader_001")]
         if node.kind == "mix_shader":
-            share = float(np.clip(self._number(node, "fac", 0.5), 0.0, 1.0))
-            weights = [weight * (1.0 - share), weight * share]
+            factor = float(np.clip(self._number(node, "fac", 0.5), 0.0, 1.0))
+            weights = [weight * (1.0 - factor), weight * factor]
         elif node.kind == "add_shader":
             weights = [weight, weight]
         else:
@@ -195,7 +195,7 @@ class _Mean:
 def mean_color(image: Image) -> np.ndarray:
     """(3,) float64, linear Rec.709: the mean of some pixels that lie evenly."""
     height, width = image.pixels.shape[:2]
-    steps = (max(1, -(-size // _MOST_PIXELS)) for size in (height, width))
+    steps = (max(1, -(-size // _MAX_PIXELS)) for size in (height, width))
     pixels = image.pixels[tuple(slice(step // 2, None, step) for step in steps)][..., :3]
     colors = pixels / 255.0 if pixels.dtype == np.uint8 else pixels.astype(np.float64)
     if image.encoding == "SRGB":

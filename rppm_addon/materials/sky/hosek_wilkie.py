@@ -7,8 +7,8 @@ Ours were found by solving for them in renders of Cycles (tests/parity/measure_h
 to 2e-7. C, D, F, G and I include the channel's overall radiance.
 
 In the cube root of the sun's elevation A, B, E and H are polynomials of degree five and the products of degree ten,
-so that twelve elevations tell all; in turbidity and albedo they are pieces of degree two, which values at the ends
-and the middle tell.
+so that twelve elevations determine all; in turbidity and albedo they are pieces of degree two, which values at the ends
+and the middle determine.
 """
 
 from pathlib import Path
@@ -26,8 +26,8 @@ _FILE = Path(__file__).with_name("hosek_wilkie.npz")
 
 
 ELEVATION_NODES = np.append(0.0, 0.53 - 0.47 * np.cos((np.arange(11) + 0.5) * np.pi / 11))
-"""Cube roots of the sun's elevation as a share of a quarter turn: 0, and Chebyshev's nodes from 0.06 to 1. Just above 0
-single precision moves Cycles' sun, so that nothing can be measured there."""
+"""Cube roots of the sun's elevation as a fraction of a quarter turn: 0, and Chebyshev's nodes from 0.06 to 1. Just
+above 0 single precision moves Cycles' sun, so that nothing can be measured there."""
 
 
 def _lagrange(nodes: np.ndarray, x: float) -> np.ndarray:

@@ -85,7 +85,7 @@ def _to_space(radius: np.ndarray, cosine: np.ndarray) -> np.ndarray:
 
 
 def transmittance(radius: np.ndarray, cosine: np.ndarray, sky: Sky) -> np.ndarray:
-    """(..., 4) share of light that comes from space to a point.
+    """(..., 4) fraction of light that comes from space to a point.
 
     radius: distance to the Earth's center, km; cosine: of the angle to the zenith; they broadcast.
     """
@@ -131,7 +131,7 @@ def sky_table(sky: Sky) -> np.ndarray:
         height = radius - EARTH_RADIUS
         air, aerosol, extinction = _coefficients(height, sky)
         kept = np.exp(-step[:, None] * extinction)
-        share = SUN_IRRADIANCE * through * (1.0 - kept) / np.maximum(extinction, 1e-7)
+        weight = SUN_IRRADIANCE * through * (1.0 - kept) / np.maximum(extinction, 1e-7)
         through *= kept
 
         # The sun's light at each row's height, by the cosine.
@@ -154,7 +154,7 @@ def sky_table(sky: Sky) -> np.ndarray:
         on_ground = sun_light[0, left]
         on_ground += part * (sun_light[0, left + 1] - on_ground)
 
-        air, aerosol = (share * air).astype(np.float32)[:, None], (share * aerosol).astype(np.float32)[:, None]
+        air, aerosol = (weight * air).astype(np.float32)[:, None], (weight * aerosol).astype(np.float32)[:, None]
         day = (1.0 / (1.0 + 5.0 * np.exp(np.float32(-17.92) * cosine)))[..., None]
         radiance += direct * (air_phase * air + aerosol_phase * aerosol)
         both = air + aerosol

@@ -35,9 +35,9 @@ class SunDisc:
         directions = np.asarray(directions, np.float64)
         from_middle = 2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(directions - self.direction, axis=1), 1.0))
         elevation = np.arcsin(np.clip(directions[:, 2], -1.0, 1.0))
-        share = from_middle / (0.5 * self.angle)
-        seen = (share < 1.0) & (elevation > self.horizon)
-        limb = 1.0 - LIMB_DARKENING * (1.0 - np.sqrt(np.maximum(1.0 - share**2, 0.0)))
+        fraction = from_middle / (0.5 * self.angle)
+        seen = (fraction < 1.0) & (elevation > self.horizon)
+        limb = 1.0 - LIMB_DARKENING * (1.0 - np.sqrt(np.maximum(1.0 - fraction**2, 0.0)))
         height = (elevation - np.arcsin(self.direction[2])) / self.angle + 0.5
         color = self.bottom + height[:, None] * (self.top - self.bottom)
         return np.where(seen[:, None], limb[:, None] * np.maximum(color, 0.0), 0.0).astype(np.float32)

@@ -17,8 +17,8 @@ def row_elevations(offset: float) -> np.ndarray:
 
     offset: where in its row the direction lies; rows are looked up at 0.5.
     """
-    share = (np.arange(ROWS) + offset) / (ROWS // 2) - 1.0
-    return np.sign(share) * share**2 * np.pi / 2
+    fraction = (np.arange(ROWS) + offset) / (ROWS // 2) - 1.0
+    return np.sign(fraction) * fraction**2 * np.pi / 2
 
 
 def azimuths_from_sun(offset: float) -> np.ndarray:
@@ -41,8 +41,8 @@ def look_up(table: np.ndarray, directions: np.ndarray, sun_rotation: float) -> n
     elevation = np.arctan2(directions[:, 2], horizontal)
     azimuth = np.arctan2(directions[:, 0], directions[:, 1]) - sun_rotation
     x = (azimuth / (2.0 * np.pi) + 0.5) * COLUMNS - 0.5
-    share = elevation / (np.pi / 2)
-    y = (0.5 + 0.5 * np.sign(share) * np.sqrt(np.abs(share))) * ROWS - 0.5
+    fraction = elevation / (np.pi / 2)
+    y = (0.5 + 0.5 * np.sign(fraction) * np.sqrt(np.abs(fraction))) * ROWS - 0.5
     column, row = np.floor(x).astype(np.int64), np.floor(y).astype(np.int64)
     u, v = (x - column)[:, None].astype(np.float32), (y - row)[:, None].astype(np.float32)
     columns = np.mod(column, COLUMNS), np.mod(column + 1, COLUMNS)

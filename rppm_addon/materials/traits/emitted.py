@@ -21,7 +21,7 @@ _EMITTING = {
 
 
 class Emits(enum.Enum):
-    """How a graph emits, as far as its structure and constants tell."""
+    """How a graph emits, as far as its structure and constants show."""
 
     NOTHING = "nothing"
     EVENLY = "evenly"
@@ -65,7 +65,7 @@ class LightVariation:
     place: bool
     """Its normal or the place on it."""
     direction: bool
-    """Where the light goes, which a normal may not tell."""
+    """Where the light goes, which a normal may not know."""
     uv: bool
     """Texture coordinates UV: places of an area light, directions of a spot."""
     distance: bool
@@ -78,7 +78,7 @@ class LightVariation:
 _SAME_EVERYWHERE = {
     "light_path", "object_info", "particle_info", "attribute", "uvmap", "random_per_island", "vector_transform",
 }  # fmt: skip
-"""Nodes that tell the same of all places of a light, but for what feeds them."""
+"""Nodes that give the same at all places of a light, but for what feeds them."""
 _BY_DIRECTION = {("new_geometry", "incoming"), ("tex_coord", "reflection")}
 _BY_UV = {("tex_coord", "uv"), ("new_geometry", "parametric")}
 _BY_BOTH = {"fresnel", "layer_weight"}

@@ -9,7 +9,7 @@ RAYCAST = "raycast"
 
 
 def traces_rays(graph: NodeGraph) -> bool:
-    """Whether any of its nodes tells what rays find around a place, such as Ambient Occlusion and Bevel."""
+    """Whether any of its nodes depends on what rays find around a place, such as Ambient Occlusion and Bevel."""
     return any(node.kind in KINDS and KINDS[node.kind].traces_rays for node in graph.nodes)
 
 

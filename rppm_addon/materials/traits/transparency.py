@@ -6,21 +6,21 @@ from .emitted import is_positive, reachable
 
 
 def passes_shadow_rays(graph: NodeGraph) -> bool:
-    """True where shadow rays may pass a surface, as far as the graph's structure and constants tell.
+    """True where shadow rays may pass a surface, as far as the graph's structure and constants show.
 
     Glass that is transparent to shadow rays, the usual trick against black shadows, stops them: photons refract its
     light, which would be there twice.
     """
     nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
-    return any(map(_is_transparent, nodes)) and not (_tells_shadow_rays(graph) and any(map(_refracts, nodes)))
+    return any(map(_is_transparent, nodes)) and not (_distinguishes_shadow_rays(graph) and any(map(_refracts, nodes)))
 
 
 def asks_for_shadow_rays(graph: NodeGraph) -> bool:
     """True where what passes a surface depends on whether a shadow ray comes to it."""
-    return passes_shadow_rays(graph) and _tells_shadow_rays(graph)
+    return passes_shadow_rays(graph) and _distinguishes_shadow_rays(graph)
 
 
-def _tells_shadow_rays(graph: NodeGraph) -> bool:
+def _distinguishes_shadow_rays(graph: NodeGraph) -> bool:
     links = (value for index in reachable(graph, graph.surface) for value in graph.nodes[index].inputs.values())
     return any(
         isinstance(link, Link)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs scatter by shares that depend on where they are seen from."""
+"""Which node graphs scatter by fractions that depend on where they are seen from."""
 
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from .emitted import is_positive, reachable
@@ -20,7 +20,7 @@ _OUTPUTS = {
 
 
 def depends_on_view(graph: NodeGraph) -> bool:
-    """Whether light may go from one direction to another by another share than the other way round."""
+    """Whether light may go from one direction to another by another fraction than the other way round."""
     nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
     links = [value for node in nodes for value in node.inputs.values() if isinstance(value, Link)]
     return any(_is_seen_from_a_side(node) for node in nodes) or any(

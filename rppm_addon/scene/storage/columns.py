@@ -88,7 +88,7 @@ def _as_array(values: list, hint: object) -> np.ndarray | None:
 
 
 def _keys(values: list, hint: object) -> Sequence[Hashable]:
-    """Return keys that tell values of a field apart; numbers in containers by their text, for -0.0 equals 0.0."""
+    """Return keys that distinguish values of a field; numbers in containers by their text, for -0.0 equals 0.0."""
     if hint is np.ndarray:
         return list(map(id, values))
     if typing.get_origin(hint) in {list, dict, tuple}:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Fingerprints that tell whether two renders, perhaps on two machines, have the same scene and settings."""
+"""Fingerprints that show whether two renders, perhaps on two machines, have the same scene and settings."""
 
 import dataclasses
 import hashlib

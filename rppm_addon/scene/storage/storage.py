@@ -57,7 +57,7 @@ def load_scene(path: str | Path) -> Scene:
     except Exception as error:  # zipfile, zlib, numpy and json raise a dozen types for what is damaged
         if isinstance(error, OSError) and error.errno in _NO_HANDLES:
             raise SceneError(f"{path} cannot be opened ({error}); raise the limit: ulimit -n 1024") from error
-        raise SceneError(f"{path} is not a saved scene ({_told(error)}); write one with rppm export") from error
+        raise SceneError(f"{path} is not a saved scene ({_short_text(error)}); write one with rppm export") from error
     if not isinstance(document, dict):
         raise SceneError(f"{path} is not a saved scene (its document is none); write one with rppm export")
     if document.get("format") != FORMAT:
@@ -66,7 +66,7 @@ def load_scene(path: str | Path) -> Scene:
         scene = decode(document["scene"], Scene, arrays)
     except Exception as error:  # whatever Python says to a document that is none
         raise SceneError(
-            f"{path} holds what this version of RPPM does not know ({_told(error)}); export it again"
+            f"{path} holds what this version of RPPM does not know ({_short_text(error)}); export it again"
         ) from error
     try:
         check_scene(scene)
@@ -77,8 +77,8 @@ def load_scene(path: str | Path) -> Scene:
 
 
 _NO_HANDLES = (errno.EMFILE, errno.ENFILE)
-_LEAST_LIMIT = 1 << 29
-_MOST_STRETCH = 100
+_MIN_LIMIT = 1 << 29
+_MAX_STRETCH = 100
 """Bytes that are taken out of an archive in any case, and for each byte of the file: real scenes, whose numbers all
 differ, stay far below."""
 _KINDS = "biuf"
@@ -89,7 +89,7 @@ def _read(path: str | Path) -> tuple[Any, dict[str, np.ndarray]]:
     size = Path(path).stat().st_size
     with zipfile.ZipFile(path) as archive:
         entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
-        limit, total = max(_LEAST_LIMIT, _MOST_STRETCH * size), sum(entry.file_size for entry in entries.values())
+        limit, total = max(_MIN_LIMIT, _MAX_STRETCH * size), sum(entry.file_size for entry in entries.values())
         if total > limit:
             raise SceneError(
                 f"{path} would take {bytes_text(total)} of memory for {bytes_text(size)} on the disk, which is more "
@@ -111,7 +111,7 @@ def _read_array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> np.ndarray:
         return npy.read_array(file, allow_pickle=False)
 
 
-def _told(error: Exception) -> str:
+def _short_text(error: Exception) -> str:
     """An error in one short line."""
     text = " ".join(str(error).split()) or type(error).__name__
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."

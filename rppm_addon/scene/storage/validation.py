@@ -28,7 +28,7 @@ _Label = Callable[[int], str]
 """Function that returns the name in messages of the member at an index."""
 _LISTS = ("meshes", "instances", "lights", "materials", "images")
 _LARGEST_INTEGER = (1 << 63) - 1
-_LEAST_STRETCH = 1e-9
+_MIN_STRETCH = 1e-9
 """Volume of a camera's axes over the product of their lengths: less is no camera that looks anywhere."""
 
 
@@ -192,13 +192,13 @@ def _check_node_value(value: object, place: int, label: _Label) -> None:
     kinds = (int, float, np.integer, np.floating)
     if not isinstance(numbers, list | tuple) or not all(isinstance(number, kinds) for number in numbers):
         raise SceneError(f"{label(place)} is {_shown(value)}; it must be a number, a color, a text or a link")
-    if len(numbers) > _MOST_CHANNELS or not all(abs(number) <= FLOAT_MAX for number in numbers):
-        raise SceneError(f"{label(place)} is {_shown(value)}; it must be finite, {_MOST_CHANNELS} numbers at most")
+    if len(numbers) > _MAX_CHANNELS or not all(abs(number) <= FLOAT_MAX for number in numbers):
+        raise SceneError(f"{label(place)} is {_shown(value)}; it must be finite, {_MAX_CHANNELS} numbers at most")
 
 
 _NAME_LENGTH = 4
 """Longer ones are names of dtypes, shorter ones kinds."""
-_MOST_CHANNELS = 4
+_MAX_CHANNELS = 4
 
 
 @functools.cache
@@ -213,7 +213,7 @@ def _has_lengths(kind: type) -> bool:
 
 
 def _are_alike(said: Declared, values: Sequence) -> bool:
-    """Whether a single one of many arrays tells what is to be known of all."""
+    """Whether one of many arrays is enough to know of all."""
     if said.finite or said.below or any(isinstance(length, str) for length in said.shape or ()):
         return False
     return all(isinstance(value, np.ndarray) for value in values) and (
@@ -295,13 +295,13 @@ def _check_mesh(mesh: Mesh, label: str) -> None:
     }
     for name, attribute in mesh.attributes.items():
         shape, count = attribute.values.shape, counts[attribute.domain]
-        if len(shape) != 2 or shape[0] != count or not 1 <= shape[1] <= _MOST_CHANNELS:
+        if len(shape) != 2 or shape[0] != count or not 1 <= shape[1] <= _MAX_CHANNELS:
             domain = attribute.domain.value
             raise SceneError(
                 f'{label}: attributes["{_escaped(name)}"] has the shape {shape}; there are {count} {domain}s'
             )
-        if name == SMOOTH_NORMALS and (attribute.domain is not AttributeDomain.CORNER or shape[1] != _MOST_CHANNELS):
-            raise SceneError(f'{label}: attributes["{name}"] must have {_MOST_CHANNELS} numbers for each corner')
+        if name == SMOOTH_NORMALS and (attribute.domain is not AttributeDomain.CORNER or shape[1] != _MAX_CHANNELS):
+            raise SceneError(f'{label}: attributes["{name}"] must have {_MAX_CHANNELS} numbers for each corner')
 
 
 def _check_graph(graph: NodeGraph, label: str) -> None:
@@ -329,7 +329,7 @@ def _check_links(values: typing.Iterable[object], count: int, label: str) -> Non
 def _check_camera(camera: Camera, label: str) -> None:
     axes = camera.matrix[:3, :3].astype(np.float64)
     lengths = np.linalg.norm(axes, axis=0)
-    if not lengths.all() or abs(np.linalg.det(axes / lengths)) < _LEAST_STRETCH:
+    if not lengths.all() or abs(np.linalg.det(axes / lengths)) < _MIN_STRETCH:
         raise SceneError(f"{label}: matrix has axes of no length or in one plane; give the camera a rotation and scale")
     left, right, bottom, top = camera.window
     if not (left < right and bottom < top):
@@ -358,7 +358,7 @@ def _check_texels(scene: Scene, texels: Texels) -> None:
         raise SceneError(f"camera: texels: triangles has the shape {texels.triangles.shape}, not ({height}, {width})")
     count = scene.meshes[scene.instances[texels.instance].mesh].triangle_count
     greatest = int(texels.triangles.max())
-    if 0 < count <= greatest:  # of meshes without any the renderer tells more
+    if 0 < count <= greatest:  # of meshes without any the renderer reports more
         raise SceneError(f"camera: texels: triangles has the index {greatest}; there are {count} triangles")
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from ...gl.programs.programs import ProgramLibrary
 from ...integrator.surfaces import displaced_vertices, resolve
-from ...materials.compiler.compiler import NEUTRAL_TEXT, GraphError, compile_displacement, compile_graph
+from ...materials.compiler.compiled_graph import NEUTRAL_TEXT, GraphError
+from ...materials.compiler.compiler import compile_displacement, compile_graph
 from ...materials.tables import MaterialTables, default_material
 from ...scene.materials import Material
 from ...scene.scene import Scene

@@ -24,7 +24,7 @@ uniform Parameters { CoverageParameters parameters; };
 buffer Importons;
 readonly buffer Closures;
 
-const uint MOST_LAYERS = 4u;
+const uint MAX_LAYERS = 4u;
 const float FLAT = 0.99;
 
 struct Disk {
@@ -82,7 +82,7 @@ float covered(Disk disk, vec3 point) {
     vec3 at = point + height * disk.normal;
     uint source = NO_TRIANGLE;
     // What lies behind the first layer below the importon's plane is shut off (is_shut_off).
-    for (uint layer = 0u; layer < MOST_LAYERS && sum < FLAT && left >= height; ++layer) {
+    for (uint layer = 0u; layer < MAX_LAYERS && sum < FLAT && left >= height; ++layer) {
         Hit hit = nearest_hit(Ray(at, source, -disk.normal, left));
         if (hit.triangle == NO_TRIANGLE) break;
         source = hit.triangle;
@@ -121,7 +121,7 @@ void main() {
     RandomSequence random = random_of(index);
     uint count = 0u;
     bool found = false;
-    while (!found && count < MOST_PROBES) {
+    while (!found && count < MAX_PROBES) {
         ++count;
         float part = covered(disk, point_on(disk, random));
         found = part >= 1.0 || next_random(random) < part;

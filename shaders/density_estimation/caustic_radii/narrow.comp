@@ -15,7 +15,7 @@ buffer RadiusFactors;
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    float factor = iteration.number == 1u ? parameters.most_factor : radius_factors[index];
+    float factor = iteration.number == 1u ? parameters.max_factor : radius_factors[index];
     float taken = float(photon_counts[caustic_place(index)]);
     if (taken > parameters.expected) factor = max(factor * sqrt(parameters.expected / taken), 1.0);
     radius_factors[index] = factor;

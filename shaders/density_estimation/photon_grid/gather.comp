@@ -74,7 +74,7 @@ void main() {
     Cells cells = cells_around(importon.position, radius, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
-    uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.most_rounds;
+    uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.max_rounds;
     bool any = false;
     while (true) {
         // On to the next photon within reach first: the threads of a group then evaluate theirs together.

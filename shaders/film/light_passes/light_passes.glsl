@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What light adds to the passes that tell apart what makes it (scene/passes.py).
+// What light adds to the passes that separate what makes it (scene/passes.py).
 #include "common/bsdf/microfacet.glsl"
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"

@@ -7,7 +7,7 @@ vec3 direction_or(vec3 direction, vec3 other) {
 }
 
 #ifdef NODE_RAYS
-uint ray_count(float samples) { return uint(clamp(samples, 1.0, float(MOST_NODE_RAYS))); }
+uint ray_count(float samples) { return uint(clamp(samples, 1.0, float(MAX_NODE_RAYS))); }
 #endif
 
 // The share of the rays around the normal that come as far as the distance.

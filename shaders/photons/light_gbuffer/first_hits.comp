@@ -25,7 +25,7 @@ uint face_of(vec3 direction) {
     return 2u * uint(axis) + (direction[axis] < 0.0 ? 1u : 0u);
 }
 
-// Whether the texel tells where a ray ends.
+// Whether the texel determines where a ray ends.
 bool find_hit(Ray ray, uvec2 range, out Hit hit) {
     hit = Hit(NO_TRIANGLE, 0.0, 0.0, min(ray.maximum_distance, INFINITY_DISTANCE));
     uint number = range.x + (range.y == 6u ? face_of(ray.direction) : 0u);

@@ -24,7 +24,7 @@ void main() {
     if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return;
     vec4 extent;
     float tip = view.margin * (2.0 + 1.0 / view.tangent);
-    if (!cone_extent(a, b, c, view_window(view), view.margin, view.least_depth, tip, extent)) return;
+    if (!cone_extent(a, b, c, view_window(view), view.margin, view.min_depth, tip, extent)) return;
     // A part of a texel more covers the rounding of the division.
     vec4 texels = (extent / view.tangent * 0.5 + 0.5) * float(parameters.side) + vec4(-0.125, -0.125, 0.125, 0.125);
     float last = float(parameters.side) - 1.0;

@@ -27,7 +27,7 @@ uniform sampler2D last_surfaces;
 uniform sampler2D last_numbers;
 
 const float SAME_NORMAL = 0.8, SAME_DEPTH = 0.02, NEAR_DEPTH = 0.1;
-const float LEAST_WEIGHT = 0.05;
+const float MIN_WEIGHT = 0.05;
 // How much brighter than all that is new around it a specular surface may stay: glints move over it with the view.
 const float BRIGHTER_KEPT = 1.0;
 const uint SEARCHED = 32u, ENOUGH = 8u;
@@ -162,7 +162,7 @@ vec4 upsampled(ivec2 pixel, Seen seen) {
             weight += share;
         }
     }
-    return weight > LEAST_WEIGHT ? same / weight : all_around / all_weight;
+    return weight > MIN_WEIGHT ? same / weight : all_around / all_weight;
 }
 
 void main() {
@@ -176,7 +176,7 @@ void main() {
         color = new_size() == size_of(camera) ? new_at(pixel) : upsampled(pixel, seen);
         count = parameters.new_count;
     }
-    if (parameters.most_history > 0.0) {
+    if (parameters.max_history > 0.0) {
         vec3 place;
         bool in_front = find_last_place(pixel, seen, place);
         Sum last = Sum(vec4(0.0), 0.0, 0.0);
@@ -185,7 +185,7 @@ void main() {
         if (in_front && !found && count == 0.0) last = filled(seen, place);
         if (last.weight > 0.0) {
             bool specular = is_specular(seen);
-            float most = specular ? parameters.most_specular_history : parameters.most_history;
+            float most = specular ? parameters.max_specular_history : parameters.max_history;
             float history = found ? min(last.count / last.weight, most) : 0.0;
             vec4 before = last.color / last.weight;
             if (specular && count > 0.0) {

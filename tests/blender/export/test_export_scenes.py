@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from blender_scenes import export
 
-from rppm_addon.materials.compiler.compiler import Resource, compile_graph
+from rppm_addon.materials.compiler.compiled_graph import Resource
+from rppm_addon.materials.compiler.compiler import compile_graph
 
 SCENES = Path(__file__).resolve().parents[4] / "shared" / "scenes"
 

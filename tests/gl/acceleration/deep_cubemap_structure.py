@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import CELL, JOIN_MOST, STATE, CellKind, DeepCubemap
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.deep_cubemap.records import CELL, MAX_JOIN, STATE, CellKind
 
 LIST, BINS, TILE = CellKind
 BEFORE, BEHIND = 2, 1
@@ -61,7 +62,7 @@ class Structure:
     def bins(self, rows: np.ndarray, codes: np.ndarray) -> np.ndarray:
         """The bins of codes whose slices are in use, for cells of kind BINS."""
         exponent = (self.cells["content"][rows] & 15).astype(np.int64)
-        cut, join = np.maximum(exponent - JOIN_MOST, 0), np.maximum(JOIN_MOST - exponent, 0)
+        cut, join = np.maximum(exponent - MAX_JOIN, 0), np.maximum(MAX_JOIN - exponent, 0)
         part = self.parts(rows, codes, 32 << cut)
         piece = part >> cut
         used_before = bit_count(self.cells["slices"][rows].astype(np.int64) & ((1 << piece) - 1))
@@ -136,7 +137,7 @@ def read_structure(cubemap: DeepCubemap) -> Structure:
     listed, binned = np.flatnonzero(kind == LIST), np.flatnonzero(kind == BINS)
     # the slices in use, joined or cut
     slices = bit_count(cells["slices"])
-    cut, join = np.maximum(count - JOIN_MOST, 0), np.maximum(JOIN_MOST - count, 0)
+    cut, join = np.maximum(count - MAX_JOIN, 0), np.maximum(MAX_JOIN - count, 0)
     bin_counts = np.where(kind == BINS, (((slices << cut) - 1) >> join) + 1, 0)
 
     # a row for each list and each bin

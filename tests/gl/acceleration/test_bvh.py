@@ -163,7 +163,7 @@ def test_hierarchies_hold_each_box_once_and_are_not_deep(place):
     nodes = clustering.build_nodes(low, low + np.float32(0.01), leaves.copy())
     np.testing.assert_array_equal(leaves_of(nodes), leaves)
     assert_boxes_enclose(nodes)
-    assert depth_of(nodes) <= clustering.MOST_DEPTH
+    assert depth_of(nodes) <= clustering.MAX_DEPTH
 
 
 def test_hierarchies_are_the_same_each_time():

@@ -12,7 +12,8 @@ from support.families import some_each_time
 
 from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.common.records.rays import NO_TRIANGLE
-from rppm_addon.integrator.deep_cubemap import deep_cubemap
+from rppm_addon.integrator.deep_cubemap import build_buffers
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.self_test.ray_queries import TracedTriangles, ray_records
 
@@ -153,7 +154,9 @@ def test_buffers_too_long_for_texels_are_read_as_storage(context, library, meshe
     rays = ray_records(*make_rays("uniform", 2_000, PLAIN, seed=8))
     with TracedTriangles(context, library, meshes, PLAIN, 256, texel_buffers=True) as scene:
         expected = scene.trace(rays)
-        monkeypatch.setattr(scene.structure, "_most_texel_bytes", 1024)
+        assert "TEXEL_BUFFERS" in scene.structure.traversal_defines
+        monkeypatch.setattr(context, "max_texels", 64)
+        assert "TEXEL_BUFFERS" not in scene.structure.traversal_defines
         np.testing.assert_array_equal(bits(scene.trace(rays)), bits(expected))
 
 
@@ -235,7 +238,7 @@ def test_broken_triangles_do_no_harm(context, library):
 
 
 def test_lists_that_are_too_short_grow(context, library, meshes, monkeypatch):
-    monkeypatch.setattr(deep_cubemap, "_expected", lambda *_: {"tile": 200})
+    monkeypatch.setattr(build_buffers, "expected_lengths", lambda *_: {"tile": 200})
     center = meshes[len(meshes) // 2, 0]  # on a dense mesh: a long core list
     rays = ray_records(*make_rays("past the center", 20_000, center, seed=16))
     with TracedTriangles(context, library, meshes, center) as scene:
@@ -286,7 +289,7 @@ def test_lists_that_are_longer_than_a_block(context, library, meshes, monkeypatc
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
         expected, counts, finest = scene.trace(rays), scene.structure.counts, scene.structure.resolution
     limit = 1 << 17  # enough for cells and bins
-    monkeypatch.setattr(deep_cubemap, "_expected", lambda *_: {"tile": 200})
+    monkeypatch.setattr(build_buffers, "expected_lengths", lambda *_: {"tile": 200})
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
     with TracedTriangles(context, library, meshes, PLAIN, 0, rasterize=rasterize) as scene:
         assert scene.structure.counts == counts and scene.structure.resolution == finest
@@ -302,7 +305,7 @@ def test_triangles_that_the_device_cannot_hold_are_an_error(context, library, me
         expected = scene.trace(rays)
         monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 16)
         monkeypatch.setattr(Context, "array_limit", lambda device, _: device.storage_block_limit)
-        fresh = deep_cubemap.DeepCubemap(context, library)
+        fresh = DeepCubemap(context, library)
         with pytest.raises(DeviceError, match=r"MiB .* allows 0 MiB .*lower the cubemap resolution"):
             fresh.build(scene.triangles, len(meshes), PLAIN, 2.0)
         monkeypatch.undo()

@@ -10,13 +10,14 @@ import pytest
 from deep_cubemap_scenes import CENTERS, furnished_room, room_with_meshes, sphere
 from deep_cubemap_structure import BEFORE, BEHIND, BINS, LIST, TILE, Structure, as_sets, read_structure
 
-from rppm_addon.integrator.deep_cubemap.deep_cubemap import JOIN_MOST, DeepCubemap
+from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
+from rppm_addon.integrator.deep_cubemap.records import MAX_JOIN
 from rppm_addon.self_test.ray_queries import TracedTriangles
 
 POINTS = 200_000
 BASE_LEVEL = 2
-MOST_LISTED = 6
-MOST_TOUCHED = 7  # of the 16 cells of a tile by each triangle, on average
+MAX_LISTED = 6
+MAX_TOUCHED = 7  # of the 16 cells of a tile by each triangle, on average
 
 
 def points_on(triangles: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -121,13 +122,13 @@ def test_lists_are_for_few_triangles_and_bins_for_many(context, library):
             held = np.bincount(distinct(structure)[:, 0], minlength=len(structure.kind))
             leaf, binned = structure.kind != TILE, structure.kind == BINS
             np.testing.assert_array_equal(held[leaf] == 0, structure.kind[leaf] == -1)
-            np.testing.assert_array_equal(leaf & (held > MOST_LISTED), binned)
+            np.testing.assert_array_equal(leaf & (held > MAX_LISTED), binned)
             assert np.all(structure.cells["slices"][leaf & (held == 0)] == 0)
-            most = int(structure.state["most_bins"])
+            most = int(structure.state["max_bins"])
             assert np.all(structure.bin_counts[binned] >= 1)
             assert np.all(structure.bin_counts[binned] <= np.minimum(held[binned], most))
             # each bin begins and ends at a slice in use, so that none is empty unless a slice was cut
-            joined = binned & (structure.cells["content"] & 15 <= JOIN_MOST)
+            joined = binned & (structure.cells["content"] & 15 <= MAX_JOIN)
             filled = np.bincount(np.unique(structure.entries[:, :2], axis=0)[:, 0], minlength=len(structure.kind))
             np.testing.assert_array_equal(filled[joined], structure.bin_counts[joined])
             used |= set(structure.cells["content"][binned] & 15)
@@ -203,12 +204,12 @@ def test_cells_that_hold_much_are_divided_where_that_gains(context, library, nam
             continue  # touched by the margin only, or near the center
         side = structure.root_side << (2 * int(structure.level[row]))
         x, y = structure.x[row], structure.y[row]
-        least_gain = int(structure.state["least_gain"])
+        min_gain = int(structure.state["min_gain"])
 
         number = len(found)
 
-        def gains(touched, number=number, least_gain=least_gain):
-            return touched <= MOST_TOUCHED * number and touched + 16 * least_gain < 16 * number
+        def gains(touched, number=number, min_gain=min_gain):
+            return touched <= MAX_TOUCHED * number and touched + 16 * min_gain < 16 * number
 
         if is_divided:
             assert gains(touched_cells(np.array(found), x, y, side, 0.0))
@@ -218,17 +219,17 @@ def test_cells_that_hold_much_are_divided_where_that_gains(context, library, nam
     assert seen == ({False} if name == "furnished room" else {False, True})
 
 
-@pytest.mark.parametrize("most_bins", [1, 1024])
-def test_other_numbers_of_bins(context, library, most_bins):
+@pytest.mark.parametrize("max_bins", [1, 1024])
+def test_other_numbers_of_bins(context, library, max_bins):
     with TracedTriangles(context, library, SCENES["crowd"](), CENTERS["plain"], 64) as scene:
         scene.structure.release()
-        scene.structure = DeepCubemap(context, library, True, most_bins=most_bins)
+        scene.structure = DeepCubemap(context, library, True, max_bins=max_bins)
         scene.build(64)
         structure = read_structure(scene.structure)
-    assert structure.state["most_bins"] == most_bins
-    assert structure.bin_counts.max() <= most_bins
+    assert structure.state["max_bins"] == max_bins
+    assert structure.bin_counts.max() <= max_bins
     held = np.bincount(distinct(structure)[:, 0], minlength=len(structure.kind))
-    assert np.all(structure.kind[held > MOST_LISTED] == BINS)
+    assert np.all(structure.kind[held > MAX_LISTED] == BINS)
 
 
 def assert_same(first: Structure, second: Structure) -> None:

@@ -7,11 +7,13 @@ import pytest
 from rppm_addon.gl.buffers.buffers import GrowingBuffer
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.gl.buffers.storage_blocks import StorageBlock
-from rppm_addon.gl.buffers.texel_buffers import MOST_ADDED, allocated_size
+from rppm_addon.gl.buffers.texel_buffers import MAX_ADDED, allocated_size
 from rppm_addon.gl.programs import sources
-from rppm_addon.gl.programs.programs import ComputeProgram, ProgramLibrary, ProgramMaker
+from rppm_addon.gl.programs.program import ComputeProgram
+from rppm_addon.gl.programs.program_maker import ProgramMaker
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.gl.programs.sources import expand
-from rppm_addon.gl.programs.texel_sources import MOST_IMAGES
+from rppm_addon.gl.programs.texel_sources import MAX_IMAGES
 from rppm_addon.scene.errors import DeviceError
 
 COUNT = 37
@@ -107,7 +109,7 @@ def test_texels_have_the_bits_of_blocks(context, shader, buffers, monkeypatch):
 def test_arrays_that_are_larger_than_a_block_are_read_as_texels(context, shader, buffers, monkeypatch):
     monkeypatch.setattr(context, "is_software", False)
     library, program = library_with(context, shader)
-    assert buffers["Things"].buffer.size > context.storage_block_limit + MOST_ADDED and context.large_buffers == 1
+    assert buffers["Things"].buffer.size > context.storage_block_limit + MAX_ADDED and context.large_buffers == 1
     found = found_by(program, buffers)
     assert library.made == 2
     with monkeypatch.context() as patch:
@@ -124,10 +126,10 @@ def test_words_that_are_more_than_texels_lie_four_in_one(context, shader, buffer
     assert library.made == 1
     order = GrowingBuffer(context, "long order", texel_bytes=16)
     order.upload(np.resize(buffers["Order"].read(np.uint32, COUNT), 800))
-    monkeypatch.setattr(context, "most_texels", 640)  # those of Things are 592
+    monkeypatch.setattr(context, "max_texels", 640)  # those of Things are 592
     np.testing.assert_array_equal(found_by(program, {**buffers, "Order": order}), expected)
     assert library.made == 2
-    monkeypatch.setattr(context, "most_texels", 560)
+    monkeypatch.setattr(context, "max_texels", 560)
     with pytest.raises(DeviceError, match="takes more of Order, Things at once than the device .*; simplify the scene"):
         found_by(program, {**buffers, "Order": order})
     order.release()
@@ -138,7 +140,7 @@ def test_what_is_written_takes_no_more_than_texels_of_its_items(context, shader,
     with pytest.raises(DeviceError, match="found needs .* in one buffer"):
         GrowingBuffer(context, "found").require(context.storage_block_limit + 1)
     library, program = library_with(context, shader)
-    monkeypatch.setattr(context, "most_texels", 1000)
+    monkeypatch.setattr(context, "max_texels", 1000)
     with pytest.raises(DeviceError, match="takes more of Found at once"):
         program.run(1, {name: buffers["Things" if name == "Found" else name].buffer for name in program.blocks})
     library.release()
@@ -240,8 +242,8 @@ def test_what_has_no_unit_stays_a_block(shader, tmp_path):
     blocks = "".join(f"readonly buffer Block{k} {{ vec4 block{k}[]; }};\n" for k in range(20))
     (tmp_path / "own.comp").write_text(f"#version 430 core\n{blocks}")
     source = expand(shader, reads_texels=True)
-    assert list(source.texel_buffers) == [f"Block{k}" for k in range(MOST_IMAGES)]
-    assert list(source.blocks) == [f"Block{k}" for k in range(MOST_IMAGES, 20)]
+    assert list(source.texel_buffers) == [f"Block{k}" for k in range(MAX_IMAGES)]
+    assert list(source.blocks) == [f"Block{k}" for k in range(MAX_IMAGES, 20)]
 
 
 def test_what_is_written_stays_a_block(shader, tmp_path):

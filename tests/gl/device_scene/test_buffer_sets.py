@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import moderngl
 import pytest
 
-from rppm_addon.gl.buffer_sets import BufferSet, Part, StorageBuffer
+from rppm_addon.gl.buffer_sets import BufferSet, ComputeShader, Part, StorageBuffer
 from rppm_addon.gl.buffers.buffers import SMALLEST
 from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.common.active_paths import PathList
@@ -108,3 +108,33 @@ def test_what_is_too_large_is_refused_before_anything_is_made(context, monkeypat
     monkeypatch.setattr(Context, "available_memory", 1 << 20)
     with pytest.raises(DeviceError, match=r"^\d+ MiB are needed but the device .* has 1 MiB left; carry fewer$"):
         ListedAndMore.refuse_large(context, Sizes(1 << 15))
+
+
+class Optional(BufferSet):
+    marks = StorageBuffer("marks", "uint", lambda sizes: sizes.sticks, block="Marks", zeroed=True)
+    program = ComputeShader("common/active_paths/fill.comp")
+
+    @classmethod
+    def is_needed(cls, sizes):
+        return sizes.sticks > 1
+
+
+class WithOptional(BufferSet):
+    optional = Part(Optional)
+
+
+def test_a_set_that_is_not_needed_has_empty_buffers_and_no_program(context, library):
+    made = library.made
+    off, on = (WithOptional(context, library, Sizes(1, sticks)) for sticks in (1, 3))
+    assert off.memory_bytes == WithOptional.expected_bytes(Sizes(1, 1)) == {}
+    assert on.memory_bytes == WithOptional.expected_bytes(Sizes(1, 3)) == {"marks": SMALLEST}
+    assert "Marks" in off.blocks  # for programs that others have
+    assert not off.optional.is_on and on.optional.is_on
+    assert not on.optional.marks.read("u4", 3).any()
+    with pytest.raises(AttributeError, match="Optional is off"):
+        _ = off.optional.program
+    assert library.made <= made + 1
+    WithOptional.refuse_large(context, Sizes(1, 1))
+    on.release()
+    assert on.optional.program is library.compute("common/active_paths/fill.comp")  # it belongs to the library
+    off.release()

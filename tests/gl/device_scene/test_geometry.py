@@ -205,7 +205,7 @@ def test_too_many_triangles_are_named(context, geometry, monkeypatch):
     scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 4, 4), [ball], instances, [scenes.diffuse(1, 1, 1)])
     each = ball.triangle_count
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 48 * each * 9)
-    monkeypatch.setitem(context.__dict__, "most_texels", 64)
+    monkeypatch.setitem(context.__dict__, "max_texels", 64)
     most = f'{9 * each} of "grass", {each} of "moss"; {9 * each} have room'
     said = f"world triangles needs .*Simplify .*of {10 * each} triangles, .* {most}"
     with pytest.raises(DeviceError, match=said):

@@ -23,7 +23,8 @@ void main() {
         seen = vec3(parameters.emitted);
         pdf = emissive_triangle_pdf(parameters.point, sampled.triangle);
         for (uint emissive = 0u; emissive < iteration.emissive_triangle_count; ++emissive)
-            if (emissive_triangles[emissive].triangle == sampled.triangle) pdf *= emissive_triangles[emissive].share;
+            if (emissive_triangles[emissive].triangle == sampled.triangle)
+                pdf *= emissive_triangles[emissive].probability;
     } else if (sampled.distance > 0.0)
         seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);
     results[3u * index] = vec4(sampled.direction, sampled.distance);

@@ -8,7 +8,7 @@ import pytest
 from scenes import diffuse
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.lights import lights
+from rppm_addon.integrator.lights import light_list
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RayVisibility, RenderSettings, Scene
 from rppm_addon.self_test.meshes import placed, rectangle
 
@@ -86,7 +86,7 @@ def test_a_wall_hides_parts_of_the_disk_unless_the_lamp_has_no_shadows(mapper, m
     emitted = []
     for holds in (True, False):
         if not holds:
-            monkeypatch.setattr(lights, "holds_surfaces", lambda *_: False)
+            monkeypatch.setattr(light_list, "holds_surfaces", lambda *_: False)
         scene = _scene(DirectLight.PHOTONS, 1.0, soft_falloff=True, casts_shadow=casts_shadow)
         scene.meshes.append(rectangle("wall", (0, -4, 0), (0, 4, 0), (0, 4, 4), (0, -4, 4)))
         scene.instances.append(Instance(1, np.eye(4), [0]))

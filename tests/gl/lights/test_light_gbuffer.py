@@ -78,7 +78,7 @@ def test_lights_of_some_extent_are_traced(mapper, library, name):
 
 
 def test_of_many_lights_some_are_rasterized(mapper, library, monkeypatch):
-    monkeypatch.setattr(light_gbuffer, "MOST_LIGHTS", 5)
+    monkeypatch.setattr(light_gbuffer, "MAX_LIGHTS", 5)
     traced, rasterized, settled = both_hits(mapper, library, open_room([*LIGHTS.values(), *TRACED_LIGHTS.values()]))
     np.testing.assert_array_equal(traced.view(np.uint32), rasterized.view(np.uint32))
     assert 0.1 < settled < 0.9

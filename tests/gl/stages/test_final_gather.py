@@ -183,7 +183,7 @@ def test_storage_blocks_give_the_same_picture(mapper, other_mapper, library, mon
     """Software drivers read the same data through image units instead of storage blocks."""
     as_it_is = picture(mapper)
     monkeypatch.setattr(library, "_reads_texels", False)
-    monkeypatch.delitem(library._programs, ("final_gather/reuse.comp", (), ()))
+    monkeypatch.delitem(library._programs, ("camera_paths/final_gather/reuse.comp", (), ()))
     np.testing.assert_array_equal(picture(other_mapper), as_it_is)
 
 

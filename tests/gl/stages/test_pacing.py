@@ -46,7 +46,7 @@ def test_no_piece_is_longer_than_allowed(monkeypatch, seconds_per_item):
     for items in (100_000, 100_000, 20):
         given = device.run(pacing, pace, items)
         assert sum(count for _, count in given) == items
-        assert max(count for _, count in given) * seconds_per_item <= pacing.most_seconds
+        assert max(count for _, count in given) * seconds_per_item <= pacing.max_seconds
         firsts = [first for first, _ in given]
         if firsts != [...]:
             assert firsts == np.cumsum([0, *(count for _, count in given[:-1])]).tolist()
@@ -72,7 +72,7 @@ def test_what_becomes_slow_is_cut_finer(monkeypatch):
     device.seconds_per_item = 1e-4
     device.run(pacing, pace, 50_000)  # nobody could know
     given = device.run(pacing, pace, 50_000)
-    assert max(count for _, count in given) * device.seconds_per_item <= pacing.most_seconds
+    assert max(count for _, count in given) * device.seconds_per_item <= pacing.max_seconds
 
 
 def test_a_device_that_is_not_waited_for_is_asked_afterward(monkeypatch):
@@ -104,21 +104,21 @@ def test_a_device_that_is_not_waited_for_is_asked_afterward(monkeypatch):
     for _ in range(2):
         given = device.run(pacing, pace, 10_000)
         assert sum(count for _, count in given) == 10_000
-        assert max(count for _, count in given) * device.seconds_per_item <= pacing.most_seconds
+        assert max(count for _, count in given) * device.seconds_per_item <= pacing.max_seconds
     assert given[0] != (0, 64)  # its speed is known by then
 
 
 def picture(mapper, library, longest):
     """Return the radiance after two iterations, with so many seconds for a piece, and the number of pieces."""
     pacing = library.pacing
-    before, pacing.most_seconds = pacing.pieces, longest
+    before, pacing.max_seconds = pacing.pieces, longest
     pacing.forget()
     try:
         mapper.build(scenes.room(24, photons=2048, density_estimation=DensityEstimation.RASTERIZED))
         for _ in range(2):
             mapper.iterate()
     finally:
-        pacing.most_seconds = pacing_module.LONGEST_SECONDS
+        pacing.max_seconds = pacing_module.LONGEST_SECONDS
     return mapper.film.read_radiance(), pacing.pieces - before
 
 

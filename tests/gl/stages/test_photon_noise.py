@@ -73,7 +73,7 @@ def test_squares_of_signed_sums_are_the_variance_of_photons(mapper):
 @pytest.mark.parametrize("pixels", [1 << 20, 700])
 def test_samples_are_those_of_whole_rows_and_columns(mapper, monkeypatch, pixels):
     """However many bands there are."""
-    monkeypatch.setattr(photon_noise, "_MOST_SAMPLES", pixels)
+    monkeypatch.setattr(photon_noise, "_MAX_SAMPLES", pixels)
     scene = floor_and_ball(64)
     rest = []
     for pixels_of_band in (1 << 18, 64 * 10):

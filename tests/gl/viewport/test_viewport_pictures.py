@@ -11,7 +11,7 @@ from support.floor import floor_scene
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.common.viewport_demands import ViewportDemands
 from rppm_addon.integrator.viewport.first_look import FirstLook
-from rppm_addon.integrator.viewport.noise_filter import MOST_SAMPLES, strength
+from rppm_addon.integrator.viewport.noise_filter import MAX_SAMPLES, strength
 from rppm_addon.integrator.viewport.pictures import ViewportPictures, demands_of, expected_bytes
 from rppm_addon.integrator.viewport.reprojection import HISTORY_ENDS, differ_by_view
 from rppm_addon.scene import Light, LightKind
@@ -131,9 +131,9 @@ def test_photons_are_left_as_they_are(mapper, pictures):
 
 
 def test_the_filter_ends():
-    assert strength(1, 1000) == 1.0 and strength(MOST_SAMPLES, 1000) == 0.0
+    assert strength(1, 1000) == 1.0 and strength(MAX_SAMPLES, 1000) == 0.0
     assert strength(1, 1) == strength(2, 2) == strength(8, 8) == 0.0 and strength(1, 2) == 1.0
-    strengths = [strength(samples, 1000) for samples in range(1, 2 * MOST_SAMPLES)]
+    strengths = [strength(samples, 1000) for samples in range(1, 2 * MAX_SAMPLES)]
     assert strengths == sorted(strengths, reverse=True)
 
 

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.lights.environment import distribution_of
-from rppm_addon.integrator.lights.light_entry import spot_share, spread_constants, spread_share
-from rppm_addon.integrator.lights.lights import share_out
+from rppm_addon.integrator.lights.light_entry import spot_solid_angle, spread_constants, spread_integral
+from rppm_addon.integrator.lights.photon_allocation import apportion
 from rppm_addon.materials.traits.emitted import Emits, emits
 
 
@@ -19,7 +19,7 @@ from rppm_addon.materials.traits.emitted import Emits, emits
 @given(st.lists(st.floats(0, 1e6), min_size=1, max_size=20), st.integers(1, 100000))
 def test_shares_add_up(weights, photons):
     weights = np.array(weights)
-    counts = share_out(weights, photons)
+    counts = apportion(weights, photons)
     assert (counts >= 0).all()
     if weights.sum() <= 0:
         assert counts.sum() == 0
@@ -34,17 +34,17 @@ def test_shares_add_up(weights, photons):
 @pytest.mark.parametrize("angle", [0.1, 0.8, 2.5])
 def test_hard_spot_has_the_flux_of_its_cone(angle):
     cosine = math.cos(angle / 2)
-    assert spot_share(cosine, 0.0) == pytest.approx(2 * math.pi * (1 - cosine), rel=1e-3)
+    assert spot_solid_angle(cosine, 0.0) == pytest.approx(2 * math.pi * (1 - cosine), rel=1e-3)
 
 
 def test_soft_spot_has_the_flux_of_the_smooth_step():
     # the integral of 3x^2 - 2x^3 over [0, 1] is 1/2
-    assert spot_share(0.5, 1.0) == pytest.approx(math.pi * 0.5, rel=1e-3)
+    assert spot_solid_angle(0.5, 1.0) == pytest.approx(math.pi * 0.5, rel=1e-3)
 
 
 @pytest.mark.parametrize("degrees", [170, 120, 90, 60, 20, 5])
 def test_spread_keeps_the_flux_of_an_area_light(degrees):
-    assert spread_share(*spread_constants(math.radians(degrees))) == pytest.approx(math.pi, rel=2e-3)
+    assert spread_integral(*spread_constants(math.radians(degrees))) == pytest.approx(math.pi, rel=2e-3)
     assert spread_constants(math.pi) == (0.0, 1.0)
 
 

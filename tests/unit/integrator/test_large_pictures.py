@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS, MOST_RASTER_PIXELS, bands_of
+from rppm_addon.integrator.common.band import MAX_RASTER_PIXELS, MAXIMUM_BAND_PIXELS, bands_of
 from rppm_addon.integrator.common.camera_view import is_rasterized
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.memory import expected_memory
@@ -34,7 +34,7 @@ class Device:
 def test_bands_can_be_drawn_and_cover_all_rows(width, height):
     bands = bands_of(width, height)
     assert sum(band.rows for band in bands) == height
-    assert max(band.rows for band in bands) <= MOST_RASTER_PIXELS
+    assert max(band.rows for band in bands) <= MAX_RASTER_PIXELS
     assert all(band.rows == 1 or band.pixel_count <= MAXIMUM_BAND_PIXELS for band in bands)
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from support.every_node import programs
 
-from rppm_addon.materials.compiler import compiler
-from rppm_addon.materials.compiler.compiler import MOST_NODE_RAYS, GraphError, NodeRayCounts, Resource, compile_graph
+from rppm_addon.materials import compiler
+from rppm_addon.materials.compiler.compiled_graph import MAX_NODE_RAYS, GraphError, NodeRayCounts, Resource
+from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
 from rppm_addon.scene.passes import aov_passes
 
@@ -216,7 +217,7 @@ def test_a_chain_of_five_thousand_nodes():
 
 def test_more_nodes_than_drivers_compile_are_refused(monkeypatch):
     """Only nodes that are in use count: others cost nothing."""
-    monkeypatch.setattr(compiler, "MOST_CALLS", 50)
+    monkeypatch.setattr(compiler, "MAX_CALLS", 50)
     graph = NodeGraph()
     for count in (30, 60):
         value = graph.add("tex_coord", "uv")
@@ -285,7 +286,7 @@ def test_rays_that_depend_on_others_are_traced_after_them(normals, expected):
 
 
 @pytest.mark.parametrize(
-    ("samples", "expected"), [(None, 16), (-3.0, 1), (4.9, 4), (1e9, MOST_NODE_RAYS), ("linked", MOST_NODE_RAYS)]
+    ("samples", "expected"), [(None, 16), (-3.0, 1), (4.9, 4), (1e9, MAX_NODE_RAYS), ("linked", MAX_NODE_RAYS)]
 )
 def test_no_node_asks_for_more_rays_than_are_traced(samples, expected):
     """Rays that are not traced would count as met."""

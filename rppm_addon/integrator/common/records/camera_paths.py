@@ -9,7 +9,7 @@ from ....gl.buffers.storage_blocks import StorageBlock
 
 
 class Scatter(enum.IntEnum):
-    """Kinds of scattering at a surface that Cycles tells apart, in the order of their passes (scene/passes.py)."""
+    """Kinds of scattering at a surface that Cycles distinguishes, in the order of their passes (scene/passes.py)."""
 
     NONE = 0
     DIFFUSE = 1

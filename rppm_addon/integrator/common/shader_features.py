@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Features of scenes for which programs are compiled with code of their own."""
+
+from dataclasses import dataclass
+
+from ...materials.traits.ashikhmin_shirley import has_ashikhmin
+from ...materials.traits.hair import has_hair
+from ...scene.scene import Scene
+from .viewport_demands import ViewportDemands
+
+
+@dataclass(frozen=True)
+class ShaderFeatures:
+    """Features that a scene has. Programs for scenes without them are shorter and take less time to compile."""
+
+    has_hair: bool = False
+    """Whether materials scatter as fibers do."""
+    has_ashikhmin: bool = False
+    """Whether materials reflect by the model of Ashikhmin and Shirley."""
+    has_portals: bool = False
+    """Whether the world's light comes in through portals."""
+
+    @classmethod
+    def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
+        """Return the features of a scene, and those that a viewport demands."""
+        return cls(
+            demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
+            demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
+            any(light.is_portal for light in scene.lights),
+        )
+
+    @property
+    def defines(self) -> dict[str, int]:
+        """Macros of the features, for programs."""
+        macros = {"HAIR_LOBES": self.has_hair, "ASHIKHMIN_LOBES": self.has_ashikhmin, "PORTALS": self.has_portals}
+        return {name: 1 for name, has in macros.items() if has}

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Inputs of gathering triangles: instances, their slots, and the arrays of all meshes one behind the other."""
+
+import numpy as np
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...scene.meshes import Mesh
+
+INSTANCE_ENTRY = Record(
+    "InstanceEntry",
+    row0="vec4",
+    row1="vec4",
+    row2="vec4",
+    pivot="vec3",
+    first_triangle="uint",
+    mesh_triangle="uint",
+    mesh_corner="uint",
+    mesh_vertex="uint",
+    mesh_uv="uint",
+    first_slot="uint",
+    slot_count="uint",
+    set_code="float",
+)
+
+_DTYPES = {
+    "positions": np.dtype(np.float32),
+    "corner_vertices": np.dtype(np.uint32),
+    "corner_normals": np.dtype(np.float32),
+    "corner_uv": np.dtype(np.float32),
+    "triangle_corners": np.dtype(np.uint32),
+    "triangle_slots": np.dtype(np.uint32),
+}
+"""Types in the buffers of arrays of meshes, by the member of Mesh and of GatherInputs."""
+
+
+class GatherInputs(BufferSet):
+    """Buffers that shaders/surfaces/geometry/gather.comp reads."""
+
+    remedy = "lower the subdivision or the children of particles (Simplify does so for all), or decimate meshes"
+    instances = StorageBuffer("geometry Instances", INSTANCE_ENTRY, texel_bytes=16, block="Instances")
+    slot_materials = StorageBuffer("geometry SlotMaterials", "uint", texel_bytes=16, block="SlotMaterials")
+    positions = StorageBuffer("geometry Positions", "float", texel_bytes=16, block="Positions")
+    corner_vertices = StorageBuffer("geometry CornerVertices", "uint", texel_bytes=16, block="CornerVertices")
+    corner_normals = StorageBuffer("geometry CornerNormals", "float", texel_bytes=16, block="CornerNormals")
+    corner_uv = StorageBuffer("geometry CornerUvs", "vec2", texel_bytes=16, block="CornerUvs")
+    triangle_corners = StorageBuffer("geometry TriangleCorners", "uint", texel_bytes=16, block="TriangleCorners")
+    triangle_slots = StorageBuffer("geometry TriangleSlots", "uint", texel_bytes=16, block="TriangleSlots")
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
+        self._arrays: dict[str, list[np.ndarray]] = {}
+        """Arrays of all meshes as they were uploaded, by member."""
+
+    def upload_meshes(self, meshes: list[Mesh]) -> None:
+        """Write the arrays of meshes that are not the very objects of the last call at the same place.
+
+        Arrays that follow each other are written together. Raises DeviceError when the device cannot hold them.
+        """
+        for member, dtype in _DTYPES.items():
+            arrays = [array for mesh in meshes if (array := getattr(mesh, member)) is not None]
+            before = self._arrays.pop(member, [])  # should an upload fail
+            buffer = getattr(self, member)
+            offsets = part_starts([array.size * dtype.itemsize for array in arrays])
+            is_new = buffer.require(int(offsets[-1]))
+            stands = not is_new and [a.shape for a in before] == [a.shape for a in arrays]
+            changed = [index for index, array in enumerate(arrays) if not (stands and array is before[index])]
+            for run in _runs(changed):
+                data = [_flat(arrays[index], dtype) for index in run]
+                buffer.write(data[0] if len(data) == 1 else np.concatenate(data), int(offsets[run[0]]))
+            self._arrays[member] = arrays
+
+
+def part_starts(lengths: list[int]) -> np.ndarray:
+    """(n + 1,) int64 places where parts of these lengths begin one behind the other, and their end."""
+    return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+
+
+def _flat(array: np.ndarray, dtype: np.dtype) -> np.ndarray:
+    """(n,) of the type in the buffer, without a copy where the bits are the same."""
+    flat = np.ascontiguousarray(array).reshape(-1)
+    if flat.dtype.kind in "iu" and flat.dtype.itemsize == dtype.itemsize and dtype.kind == "u":
+        return flat.view(dtype)
+    return flat.astype(dtype, copy=False)
+
+
+def _runs(indices: list[int]) -> list[list[int]]:
+    """Ascending numbers, those together that follow each other."""
+    runs: list[list[int]] = []
+    for index in indices:
+        if runs and runs[-1][-1] + 1 == index:
+            runs[-1].append(index)
+        else:
+            runs.append([index])
+    return runs

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Compiled graphs of a scene: those of its materials, of displacement, and of what belongs to no surface."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from ...scene.materials import Material
+from ...scene.node_graphs import NodeGraph
+from ...scene.passes import aov_passes
+from ...scene.scene import Scene
+from ..traits.emitted import Emits, emits
+from ..traits.interiors import Interior
+from .compiled_graph import NEUTRAL_TEXT, CompiledGraph, GraphError, NodeRayCounts
+from .compiler import compile_displacement, compile_graph
+
+NO_EFFECT = "it gives nothing"
+"""Consequence of an error in a graph of the world, a light or a volume."""
+
+
+@dataclass
+class TextUse:
+    """Materials whose graphs have the same GLSL."""
+
+    rays: NodeRayCounts
+    """Counts of the rays that any of them requests."""
+    names: list[str] = field(default_factory=list)
+    """Names of the materials."""
+
+
+@dataclass(frozen=True)
+class UnattachedGraph:
+    """Graph of the world, of a light or of a volume, which belongs to no surface."""
+
+    graph: NodeGraph
+    owner: str
+    """Owner, as in messages."""
+    compiled: CompiledGraph
+
+
+class SceneGraphs:
+    """Compiled graphs of a scene. A graph that is not well formed is replaced, with a warning in scene.warnings."""
+
+    def __init__(self, scene: Scene, materials: list[Material]) -> None:
+        """materials: those of the scene, and the default material."""
+        self._scene = scene
+        self.surfaces: list[CompiledGraph] = []
+        """By material."""
+        self.emits: list[Emits] = []
+        """By material."""
+        self.texts: dict[str, TextUse] = {}
+        """Distinct GLSL texts of surfaces."""
+        for material in materials:
+            self._compile_surface(material)
+        self.displacements = dict(self._compile_displacements())
+        """By index of the material, for those that displace."""
+        self.interiors = [Interior.of(material.interior) for material in materials]
+        """By material."""
+        self.unattached = list(self._compile_unattached(materials))
+
+    def _compile_surface(self, material: Material) -> None:
+        aovs, round_shapes = aov_passes(self._scene.settings.aovs), material.on_round_shapes
+        try:
+            compiled = compile_graph(material.graph, aovs, material.abbe_number, on_round_shapes=round_shapes)
+            emission = emits(material.graph)
+        except GraphError as error:
+            self._scene.warn(f'Material "{material.name}": {error}; it is gray')
+            compiled, emission = CompiledGraph(NEUTRAL_TEXT), Emits.NOTHING
+        self.surfaces.append(compiled)
+        self.emits.append(emission)
+        use = self.texts.setdefault(compiled.text, TextUse(rays=compiled.rays))
+        use.names.append(material.name)
+        use.rays = compiled.rays.united(use.rays)
+
+    def _compile_displacements(self) -> Iterator[tuple[int, CompiledGraph]]:
+        for index, material in enumerate(self._scene.materials):
+            if material.graph.displacement is None:
+                continue
+            try:
+                yield index, compile_displacement(material.graph)
+            except GraphError as error:
+                self._scene.warn(f'Material "{material.name}": {error}; it displaces nothing')
+
+    def _compile_unattached(self, materials: list[Material]) -> Iterator[UnattachedGraph]:
+        owners = [("The world", self._scene.world.graph)]
+        owners += [(f'Light "{light.name}"', light.graph) for light in self._scene.lights]
+        for material, interior in zip(materials, self.interiors, strict=True):
+            owner = f'The volume of material "{material.name}"'
+            owners += [(owner, interior.absorption), (owner, interior.emission)]
+            if interior.varies:
+                self._scene.warn(f"{owner} varies from place to place, which is not rendered; one value stands for all")
+        for owner, graph in owners:
+            if graph is not None:
+                yield UnattachedGraph(graph, owner, self._compile_light(graph, owner))
+
+    def _compile_light(self, graph: NodeGraph, owner: str) -> CompiledGraph:
+        try:
+            return compile_graph(graph, traces_rays=False)
+        except GraphError as error:
+            self._scene.warn(f"{owner}: {error}; {NO_EFFECT}")
+            return CompiledGraph(NEUTRAL_TEXT)
