@@ -88,6 +88,7 @@ lint: setup ## Check layout, Python, types, imports, license lines, shaders, pin
 	@.venv/bin/clang-format --dry-run --Werror $(SHADERS)
 	.venv/bin/ruff check .
 	.venv/bin/python tools/check_docstrings.py
+	.venv/bin/python tools/check_sizes.py
 	.venv/bin/mypy
 	.venv/bin/lint-imports --no-cache
 	.venv/bin/reuse lint --lines

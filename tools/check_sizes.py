@@ -19,6 +19,7 @@ MAX_ATTRIBUTES = 15
 TABLES = {
     "RenderSettings": "each setting is declared once, with its range, unit and texts",
     "Light": "a light's record holds the members of all kinds of lights",
+    "Instance": "an instance lists all that a mesh may have anew in each place",
     "Scene": "a scene lists all that a render needs",
 }
 """Dataclasses that list what a format has, by name, with the reason why they are not split."""

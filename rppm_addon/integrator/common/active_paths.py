@@ -25,8 +25,8 @@ ACTIVE_PATHS_HEADER = Record(
 )
 """Header of a list of paths: their ``count``, and the ``groups`` of a dispatch over them.
 
-The header is laid out as a range of shaders/surfaces/resolve/ranges.glsl, and ``first`` is the word where the numbers of the
-paths begin. A list can therefore stand for the order of the hits where one program resolves them all.
+The header is laid out as a range of shaders/surfaces/resolve/ranges.glsl, and ``first`` is the word where the numbers
+of the paths begin. A list can therefore stand for the order of the hits where one program resolves them all.
 """
 StorageBlock("KeptPaths", "ActivePathsHeader kept; uint kept_paths[];")
 

@@ -114,8 +114,10 @@ class PhotonGrid(BufferSet):
         self._place_photons.run(photons.count, {**photons.blocks, **self.blocks, **cells}, parameters)
 
     def _side(self, radius: float) -> float:
-        """Return the side of cells for spheres up to a radius, meters. shaders/density_estimation/photon_grid/gather.comp makes the
-        reach of these a little longer."""
+        """Return the side of cells, meters, for spheres up to a radius, meters.
+
+        The reach of the spheres is a little longer in shaders/density_estimation/photon_grid/gather.comp.
+        """
         return 2.0 * (1.001 * radius + 2.0 * self._rounding)
 
     def splat(self, photons: StoredPhotons, importons: SplatTargets, sums: SplatSums) -> None:

@@ -31,8 +31,9 @@ RADIUS_PARAMETERS = {
     "wide_radius": "float",
     "gathers_again_below": "float",
 }
-"""Members of IterationParameters: those of shaders/camera_paths/importons/radius.glsl; the largest radius for photons that diffuse
-surfaces have scattered, meters; and the length below which a gathering ray does not end the search, meters."""
+"""Members of IterationParameters: those of shaders/camera_paths/importons/radius.glsl; the largest radius for photons
+that diffuse surfaces have scattered, meters; and the length, meters, below which a gathering ray does not end the
+search."""
 
 
 @dataclass(frozen=True)

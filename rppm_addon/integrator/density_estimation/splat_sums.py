@@ -24,7 +24,8 @@ SUM_PARAMETERS = {
     "light_sums": "uint",
     "light_groups": "uint",
 }
-"""Parameters of programs that include shaders/density_estimation/splat_sums/roulette.glsl, add.glsl, collect.glsl or light.glsl."""
+"""Parameters of programs that include roulette.glsl, add.glsl, collect.glsl or light.glsl of
+shaders/density_estimation/splat_sums/."""
 
 StorageBlock("SplatSums", "uint sum_words[];")
 StorageBlock("PhotonCounts", "uint photon_counts[];")
@@ -88,7 +89,7 @@ def radiance_quantum(photon_flux: float, radius: float) -> float:
 
 
 class SplatSums(BufferSet):
-    """The sums of a band's pixels (shaders/density_estimation/splat_sums/sums.glsl), and how many photons each of them took."""
+    """Sums of the photons of each pixel of a band, and their numbers (density_estimation/splat_sums/sums.glsl)."""
 
     remedy = "lower the resolution"
     _sums = StorageBuffer("gathered radiance", "uint", lambda sizes: _SUM_WORDS * band_pixels(sizes), block="SplatSums")

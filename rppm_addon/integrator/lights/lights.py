@@ -123,7 +123,7 @@ class Lights(BufferSet):
 
     @property
     def blocks(self) -> dict[str, Bindable]:
-        """Storage blocks and textures of lights/lights.glsl, lights/light_tree.glsl and photons/photon_emission/emit.comp."""
+        """Storage blocks and textures of lights/lights.glsl, lights/light_tree.glsl and photon_emission/emit.comp."""
         return {
             **super().blocks,
             **self.environment.textures,

@@ -189,7 +189,7 @@ def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:
 
 
 def mirrored(matrices: np.ndarray) -> list[bool]:
-    """Whether affine matrices (n, 4, 4) mirror, so that triangles are turned round (shaders/surfaces/geometry/gather.comp)."""
+    """Whether affine matrices (n, 4, 4) mirror, so that shaders/surfaces/geometry/gather.comp turns triangles round."""
     x, y, z = (matrices[:, :3, column] for column in range(3))
     return ((x * np.cross(y, z)).sum(axis=1) < 0.0).tolist()
 

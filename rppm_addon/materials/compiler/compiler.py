@@ -134,7 +134,8 @@ class _Compiler:
         if not written:
             return ""
         lines = "".join(f"    {line}\n" for line in in_pieces([*scope.lines, *written]))
-        return f'#include "surfaces/resolve/aovs.glsl"\nvoid evaluate_aovs(Surface surface, uint first, uint path) {{\n{lines}}}\n'
+        head = "void evaluate_aovs(Surface surface, uint first, uint path)"
+        return f'#include "surfaces/resolve/aovs.glsl"\n{head} {{\n{lines}}}\n'
 
     def _aov_value(self, scope: _Scope, output: AovOutput, entry: RenderPass) -> str:
         """GLSL for what a node writes: a color, or a value."""

@@ -77,7 +77,7 @@ the clip start, ``straight_length`` of those that led straight through surfaces 
 ``primary_radius`` the radius of a pixel's cone at distance 1, or of its beam of parallel rays, from the primary hit on
 that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`` that of the scattered direction in
 1/sr where shadow rays sample the same light, else 0; ``depth`` counts bounces and transparent surfaces (Depths);
-``lit_normal`` and ``lit_from`` hold how these shadow rays chose their light (shaders/camera_paths/importons/scatter_point.glsl);
+``lit_normal`` and ``lit_from`` hold how shadow rays chose their light (camera_paths/importons/scatter_point.glsl);
 ``photon_radius`` is the radius of the disk, meters, in which photons count at the vertex where the last ray of the
 path's final gather left: photons bring some of the light there that this ray brings, too."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
