@@ -15,7 +15,7 @@ from ..geometry.meshes.rendered_meshes import has_no_faces, is_gas_domain
 from ..geometry.strands.particle_hair import HairSystem
 from ..geometry.strands.round_meshes import ROUND_TYPES, Hair, RoundSource
 from ..shading.lights.lights import export_light
-from ..shading.nodes.materials import MaterialTable
+from ..shading.nodes.material_table import MaterialTable
 from ..shading.nodes.missing_attributes import MissingAttributes
 from ..view_layer.layers import light_group_of
 from ..view_layer.visibility import visibility_of

@@ -10,7 +10,7 @@ from ....scene import Instance
 from ..camera.culling import Selection
 from ..common.report import Report
 from ..context import ExportContext
-from ..shading.nodes.materials import MaterialTable
+from ..shading.nodes.material_table import MaterialTable
 from .converted_curves import ConvertedCurves
 from .instance_reader import InstanceReader
 from .mesh_table import MeshTable

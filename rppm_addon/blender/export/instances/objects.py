@@ -9,7 +9,7 @@ import numpy as np
 from ....scene import Instance, Light
 from ..common.matrices import usable_matrices
 from ..context import ExportContext
-from ..shading.nodes.materials import MaterialTable
+from ..shading.nodes.material_table import MaterialTable
 from .instance_reader import InstanceReader
 from .mesh_table import MeshTable
 from .object_matrices import matrices_of

@@ -13,7 +13,7 @@ from .....scene.sky import Sky
 from ...context import ExportContext
 from ...geometry.meshes.attributes import GENERATED
 from .inlining import ReadableTree
-from .links import LinkTable, Path, Source, find_source
+from .links import LinkTable, Path, Source, Unlinked, find_source
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
 """Gives the value of an output: a Link, a number or a color."""
@@ -101,9 +101,13 @@ class GraphExporter:
             self.warn(node, _LOST if self._tree.owner is None else _CUT_OFF)
         return self.shader(self._tree.output.inputs["Surface"])
 
+    def _source(self, socket: bpy.types.NodeSocket, path: Path) -> Source | Unlinked:
+        """The output that feeds an input, or the socket whose own value counts."""
+        return find_source(socket, path, self._links)
+
     def shader(self, socket: bpy.types.NodeSocket, path: Path = ()) -> Link | None:
         """The shader that feeds an input; a color in place of it glows, as in Cycles."""
-        source = find_source(socket, path, self._links)
+        source = self._source(socket, path)
         if not isinstance(source, Source):
             if source.broken is not None:
                 self.warn(source.broken, _LOST)
@@ -122,7 +126,7 @@ class GraphExporter:
 
     def value(self, socket: bpy.types.NodeSocket, path: Path) -> object:
         """Return the value of an input of a node: a Link, a number, or a tuple of three."""
-        source = find_source(socket, path, self._links)
+        source = self._source(socket, path)
         if not isinstance(source, Source):
             if source.broken is not None:
                 self.warn(source.broken, _LOST)
@@ -145,17 +149,17 @@ class GraphExporter:
 
     def text(self, socket: bpy.types.NodeSocket, path: Path) -> str:
         """The text in an input; empty where a node gives it."""
-        source = find_source(socket, path, self._links)
+        source = self._source(socket, path)
         return "" if isinstance(source, Source) else str(getattr(source.socket, "default_value", ""))
 
     def is_linked(self, socket: bpy.types.NodeSocket, path: Path) -> bool:
         """Whether a node's output feeds an input."""
-        return isinstance(find_source(socket, path, self._links), Source)
+        return isinstance(self._source(socket, path), Source)
 
     def is_given(self, socket: bpy.types.NodeSocket, path: Path, shown: bool = False) -> bool:
         """Whether an input gets another value than without links: from a node's output, or from a socket of a group
         (as in Cycles, normals only from one that shows its value)."""
-        source = find_source(socket, path, self._links)
+        source = self._source(socket, path)
         return isinstance(source, Source) or (source.socket != socket and not (shown and source.socket.hide_value))
 
     def _output(self, source: Source) -> object:
