@@ -157,7 +157,7 @@ def test_what_a_wall_sends_its_floor_is_not_blurred(mapper, monkeypatch):
     be off by a tenth."""
     monkeypatch.setattr(radii, "CORNER_RADII", 0.0)  # one bounce, no more
     shared = from_above(mapper)
-    assert mapper.learning.radii(1).in_pixels * final_gather.REUSE_RADIUS > ROWS / 2
+    assert mapper.learning.radius_schedule.radii(1).in_pixels * final_gather.REUSE_RADIUS > ROWS / 2
     rows = shared.mean(axis=2)  # along the wall all is alike
     y = HEIGHT * (2.0 - (np.arange(ROWS) + 0.5) * 2.0 / ROWS)  # row 0 lies farthest off
     y = y if rows[:, -1].mean() > rows[:, 0].mean() else y[::-1]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.every_node import programs
 
-from rppm_addon.materials import compiler
+from rppm_addon.materials.compiler import compiler
 from rppm_addon.materials.compiler.compiled_graph import MAX_NODE_RAYS, GraphError, NodeRayCounts, Resource
 from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
