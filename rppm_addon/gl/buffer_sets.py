@@ -54,7 +54,7 @@ class Declared(Generic[Made]):
         if instance is None:
             return self
         raise AttributeError(
-            f"{owner.__name__} is off, or it is to call BufferSet.__init__ before it uses what it declares"
+            f"{owner.__name__} has no buffers or programs: it is off (is_needed), or BufferSet.__init__ comes later"
         )
 
     def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Made:
