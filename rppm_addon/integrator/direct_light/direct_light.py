@@ -36,7 +36,7 @@ Record(
     splits_light="uint",
 )
 
-Record("PassSurfaceParameters", passed="uint")
+Record("PassSurfaceParameters", surface_count="uint")
 
 _SURFACES_AT_ONCE = 16
 """A GPU is asked whether any shadow ray passes surfaces still this seldom, as it has to be waited for."""
@@ -144,7 +144,7 @@ class DirectLight(Stage):
             if passing.known_empty:
                 return
             context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
-            passing.run(self._pass, blocks, {"passed": surfaces})
+            passing.run(self._pass, blocks, {"surface_count": surfaces})
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
