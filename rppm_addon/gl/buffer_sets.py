@@ -32,7 +32,7 @@ class Resource(Protocol):
     """An object on the device that can be released."""
 
     def release(self) -> object:
-        """Give it back."""
+        """Free it on the device."""
 
 
 Owned = TypeVar("Owned", bound=Resource)
@@ -274,7 +274,7 @@ class BufferSet:
             )
 
     def release(self) -> None:
-        """Give all of it back."""
+        """Free all of it on the device."""
         for resource, _ in self._owned:
             resource.release()
         self._owned = []

@@ -3,8 +3,8 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
-// First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than half
-// of the light straight on are skipped, and depth is measured along the view axis, or in a panorama along the ray.
+// First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than
+// half of the light straight on are skipped, and depth is measured along the view axis, or in a panorama along the ray.
 // Denoising Data is of the first surface that is not specular. Colors add up over all surfaces by their throughput.
 
 layout(local_size_x = 64) in;
@@ -43,7 +43,7 @@ uint index;    // in the band
 uvec2 counts;  // with this iteration
 bool hit;      // the ray of the path hits a surface
 
-// Value of the first surface, for passes that accumulate as MEAN or FIRST. Passes that accumulate as SUM call add_to_pass.
+// Value of the first surface, for passes of the kinds MEAN and FIRST. Those of the kind SUM use add_to_pass.
 void write_pass(uint which, vec4 value) {
     if (!is_on(which) || (PASS_ACCUMULATION[which] == ACCUMULATION_FIRST && !(hit && counts.y == 1u))) return;
     uint place = place_of(which, index);

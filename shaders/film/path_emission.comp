@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emission at the end of the rays of camera paths. It enters the passes Emission and Environment or, where a surface has
-// scattered the path before, the passes of scattered light. Denoisers take it as albedo.
+// Emission at the end of the rays of camera paths, for the passes Emission and Environment or, where a surface has
+// scattered the path before, for those of scattered light. Denoisers take it as albedo.
 
 layout(local_size_x = 64) in;
 

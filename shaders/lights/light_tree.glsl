@@ -253,9 +253,9 @@ void intersect_light(inout IntersectedLights sum, uint number, uint kind, uint l
     sum.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// Intersects a ray with the light objects between two distances. They occlude nothing, and the camera sees all. from: in the
-// light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one
-// loop, since drivers without calls have the code of a light as often as it stands here.
+// Intersects a ray with the light objects between two distances. They occlude nothing, and the camera sees all. from:
+// in the light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree:
+// one loop, since drivers without calls have the code of a light as often as it stands here.
 IntersectedLights intersect_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u,
                                    vec3 absorption) {
     IntersectedLights sum = IntersectedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);

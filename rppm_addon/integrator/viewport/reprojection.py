@@ -241,7 +241,7 @@ class Reprojection:
         return None
 
     def _following(self, scene: Scene) -> SeenPicture:
-        """Where the picture of a scene's view comes: beside the last one of another view."""
+        """Begin the picture of a scene's view, beside the last one of another view."""
         if self._next is not None and self._next.scene is not None and self._next.scene.camera is not scene.camera:
             self._last, self._next = self._next, self._last
         self._next = self._sized(self._next, scene)
