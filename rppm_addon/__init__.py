@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RPPM: progressive photon mapping by rasterization.
 
-Blender calls register and unregister; without Blender the floors below ``blender`` are used alone.
+Blender calls register and unregister; without Blender the layers below ``blender`` are used alone.
 """
 
 import sys

@@ -56,7 +56,7 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
     def expected(settings: RenderSettings, width: int, height: int, in_viewport: bool = False) -> Memory:
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
-        segments, passes, noise = settings.photon_bounces + 1, settings.found_passes, settings.use_adaptive_sampling
+        segments, passes, noise = settings.photon_bounces + 1, settings.rendered_passes, settings.use_adaptive_sampling
         return expected_memory(width, height, photons, segments, rasterized, passes, noise, in_viewport)
 
     scene_bytes = None

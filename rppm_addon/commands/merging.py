@@ -159,7 +159,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     _check(found, incomplete)
     radiance: Any = 0.0
     settings = settings_of_plain(found[0][0].render.settings)
-    passes = MergedPasses(settings.found_passes)
+    passes = MergedPasses(settings.rendered_passes)
     inspections: dict[str, np.ndarray] = {}
     for summary, pause in _read_parts(found):
         state = pause.state
@@ -171,7 +171,8 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     render = summaries[0].render
     combined = exposed((radiance / iterations).astype(np.float32), render.exposure)
     warnings = list[str]()
-    merged = Frame(combined, {**frame_passes(passes.result(), settings.found_passes, render.exposure), **inspections})
+    accumulated = frame_passes(passes.result(), settings.rendered_passes, render.exposure)
+    merged = Frame(combined, {**accumulated, **inspections})
     frame = finished_frame(merged, settings, Denoiser(library_places()), warnings)
     return MergedStill(
         frame,

@@ -32,7 +32,7 @@ class Resource(Protocol):
     """An object on the device that can be released."""
 
     def release(self) -> object:
-        """Give it back."""
+        """Free it on the device."""
 
 
 Owned = TypeVar("Owned", bound=Resource)
@@ -54,7 +54,7 @@ class Declared(Generic[Made]):
         if instance is None:
             return self
         raise AttributeError(
-            f"{owner.__name__} is off, or it is to call BufferSet.__init__ before it uses what it declares"
+            f"{owner.__name__} has no buffers or programs: it is off (is_needed), or BufferSet.__init__ comes later"
         )
 
     def make(self, context: Context, library: ProgramLibrary, sizes: object, remedy: str) -> Made:
@@ -274,7 +274,7 @@ class BufferSet:
             )
 
     def release(self) -> None:
-        """Give all of it back."""
+        """Free all of it on the device."""
         for resource, _ in self._owned:
             resource.release()
         self._owned = []

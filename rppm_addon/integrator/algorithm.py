@@ -37,7 +37,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             stages.shadow_catcher.cast(context, importons, band, segment)
             stages.direct_light.add(context, importons, band, iteration, segment)
             yield
-            listeners.direct_light_found(events, segment)
+            listeners.direct_light_added(events, segment)
             importons.scatter(context, band, segment)
             listeners.paths_scattered(events, segment)
             stages.coverage.probe(context, importons, band, segment)

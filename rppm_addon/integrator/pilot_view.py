@@ -19,11 +19,11 @@ from .lights.portals import passes_portal
 from .stage_set import StageSet
 
 MOST_PIXELS = 1 << 14
-"""Most pixels of the first pilot view. The percentiles of so many footprints are those of all within a percent."""
+"""Largest number of pixels of the first pilot view. Percentiles of so many footprints are right within a percent."""
 FEWEST_HITS = 1 << 8
-"""With less, what is seen is small in the picture, and all pixels have to look for it."""
+"""Smallest number of hits of the first pilot view. With fewer hits, a second one has all pixels of the picture."""
 MAX_GATHERING_RAYS = 1 << 11
-"""Most gathering rays that are followed to where they end."""
+"""Largest number of gathering rays that are traced to their ends."""
 
 
 @dataclass(frozen=True)

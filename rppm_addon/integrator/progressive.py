@@ -159,7 +159,7 @@ class ProgressivePhotonMapper:
 
     @property
     def iterations_in_film(self) -> int:
-        """How many iterations the film is the mean of."""
+        """Number of iterations in the film's mean."""
         return max(self.iteration - self._skipped, 0)
 
     def measure_noise(self) -> float:

@@ -18,11 +18,11 @@ class RenderState:
     """A render between two iterations: a mapper that takes the same scene and this goes on bit for bit."""
 
     skipped: int
-    """So many iterations come before those of the film."""
+    """Number of iterations before the first one of the film."""
     iteration: int
     """The last that was run, counted from 1: ``iteration - skipped`` are in the film. The radii follow (Eq. 2)."""
     photon_counts: PhotonCounts
-    """Where automatic, those that are known so far."""
+    """Numbers of photons that have been chosen so far, where automatic."""
     photon_noise: NoiseVariances
     """Noise variances by which the number of photons of later iterations is chosen, where it is automatic."""
     wide_radius: float
@@ -52,7 +52,7 @@ class RenderState:
 
     @property
     def iterations_in_film(self) -> int:
-        """How many iterations the film's means are of."""
+        """Number of iterations in the film's means."""
         return self.iteration - self.skipped
 
 

@@ -56,7 +56,7 @@ class MapShape(enum.IntEnum):
 
 
 class LightSurfaceKind(enum.IntEnum):
-    """Whose nodes are asked."""
+    """Kinds of lights whose nodes are evaluated."""
 
     SPHERE = 0
     AREA = 1
@@ -77,22 +77,22 @@ class LightSurface:
     shape: MapShape
     position: np.ndarray
     normal: np.ndarray
-    """Unit vector along which it shines."""
+    """Unit vector along which it emits."""
     u: np.ndarray
     v: np.ndarray
     """Half extents of an area light; of a CONE, from the middle of the square at distance 1 to its edges."""
     radius: float
     instance: np.ndarray
-    """() ShadingInstance record: what nodes may ask about the object."""
+    """() ShadingInstance record, for nodes that read the light's object."""
 
 
 class GraphEvaluator(BufferSet):
-    """Runs the programs of graphs on directions instead of hits."""
+    """Evaluates node graphs at directions instead of hits."""
 
     _emissions = StorageBuffer("emission by direction", "vec4")
     _instance = StorageBuffer("object of a light", "vec4")
     _nothing = StorageBuffer("in place of geometry", "uint", 256)
-    """These graphs cannot ask about it."""
+    """Bound for blocks of geometry, which these graphs cannot read."""
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)

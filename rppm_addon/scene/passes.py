@@ -4,7 +4,8 @@
 From it follow the film's buffers, what ``shaders/film/passes.comp`` writes, checkpoints, merging, EXR layers, what
 Blender registers and shows in its panels and menus, and the names that the command line takes.
 
-To add a pass, declare it here and write its value with one line of ``shaders/film/passes.comp``.
+To add a pass, declare it here and write its value in ``shaders/film/passes.comp``: by write_pass, or by add_to_pass
+where it accumulates as SUM.
 """
 
 import enum
@@ -19,21 +20,21 @@ NOTHING_HIT = 1e10
 
 
 class Accumulation(enum.Enum):
-    """How the values that iterations find for a pixel enter the pass."""
+    """How the values of a pixel in all iterations make its value in the pass."""
 
     MEAN = 0
-    """Their mean, with ``nothing`` from iterations that see the background."""
+    """Mean over all iterations of the first surface's value, with ``nothing`` where there is no surface."""
     FIRST = 1
-    """The first surface's that an iteration finds: means of positions or indices stand for nothing. As in Cycles."""
+    """Value of the first surface in the first iteration that has one, as in Cycles: a mean of indices is none."""
     SUM = 2
-    """The mean of what all surfaces along a path add that see the camera as the pass asks."""
+    """Mean over all iterations of a sum along the camera path: any segment may add to it."""
     INSPECTION = 3
-    """None do: it is computed once, from the deep cubemap and not from iterations."""
+    """Computed once, from the deep cubemap and not from iterations."""
     COVERAGE = 4
-    """Pairs of an identifier and the fraction of the pixel that it covers: the means of what iterations see of each.
-    In the film in the order in which they were found, in a frame the largest first (scene/cryptomatte.py)."""
-    FOUND_MEAN = 5
-    """The mean of the first surfaces' that iterations find: what sees the background does not count."""
+    """Pairs of an identifier and the fraction of the pixel that it covers, a mean over all iterations. The film keeps
+    them in the order of their first appearance, a frame the largest first (scene/cryptomatte.py)."""
+    SURFACE_MEAN = 5
+    """Mean of the first surface's value over the iterations that have a surface."""
 
 
 class PassKind(enum.Enum):
@@ -57,11 +58,11 @@ class RenderPass:
     switch: str = ""
     """The property of Blender's view layers that turns it on; "" where Blender has none and the add-on adds one."""
     nothing: float = 0.0
-    """Its value where nothing is seen."""
+    """Its value where there is no surface."""
     is_radiance: bool = False
-    """Whether it is light, W/(m^2 sr), that the film's exposure scales."""
+    """Whether it is radiance, W/(m^2 sr), which the film's exposure scales."""
     divided_by: str = ""
-    """The pass over which it is handed out: what surfaces reflect, over their color. The film keeps the product."""
+    """Pass by which frames divide it: scattered light by the color of its lobes. The film keeps the product."""
     group: str = ""
     """The label of the switch that the add-on adds, where several passes share one."""
     description: str = ""
@@ -74,8 +75,8 @@ class RenderPass:
     """Number of pairs of lower levels that come before its own (COVERAGE)."""
 
     @property
-    def comes_of_iterations(self) -> bool:
-        """Whether the film keeps it."""
+    def is_accumulated(self) -> bool:
+        """Whether the film accumulates it over the iterations."""
         return self.accumulation is not Accumulation.INSPECTION
 
     @property
@@ -141,7 +142,7 @@ PASSES = (
     RenderPass("Mist", "Z", PassKind.VALUE, Accumulation.MEAN, "use_pass_mist", 1.0),
     RenderPass("Position", "XYZ", PassKind.VECTOR, Accumulation.FIRST, "use_pass_position"),
     RenderPass("Normal", "XYZ", PassKind.VECTOR, Accumulation.MEAN, "use_pass_normal"),
-    RenderPass("Vector", "XYZW", PassKind.VECTOR, Accumulation.FOUND_MEAN, "use_pass_vector"),
+    RenderPass("Vector", "XYZW", PassKind.VECTOR, Accumulation.SURFACE_MEAN, "use_pass_vector"),
     RenderPass("UV", "UVA", PassKind.VECTOR, Accumulation.MEAN, "use_pass_uv"),
     RenderPass("Object Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_object_index"),
     RenderPass("Material Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_material_index"),
@@ -191,7 +192,7 @@ PASSES = (
         ),
     ),
 )
-_APART = {Accumulation.INSPECTION, Accumulation.COVERAGE, Accumulation.FOUND_MEAN}
+_APART = {Accumulation.INSPECTION, Accumulation.COVERAGE, Accumulation.SURFACE_MEAN}
 FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation not in _APART)
 """Passes whose values shaders/film/passes.comp writes, and viewports show."""
 CAUSTICS = next(entry for entry in PASSES if entry.name == "Caustics")
@@ -249,6 +250,6 @@ def light_group_passes(groups: Sequence[str]) -> tuple[RenderPass, ...]:
 
 
 def with_divisors(names: Sequence[str]) -> tuple[str, ...]:
-    """Names of passes, and of those over which they are handed out. Raises SettingsError."""
+    """Names of passes, and of the passes that divide them. Raises SettingsError."""
     divisors = (entry.divided_by for entry in passes_named(names) if entry.divided_by)
     return tuple(dict.fromkeys((*names, *divisors)))

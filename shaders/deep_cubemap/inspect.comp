@@ -15,10 +15,10 @@ uint listed_at(vec3 point) {
     vec3 size = abs(point);
     int axis = size.x >= max(size.y, size.z) ? 0 : (size.y >= size.z ? 1 : 2);
     int face = 2 * axis + (point[axis] < 0.0 ? 1 : 0);
-    vec3 seen = to_face(point, face);
+    vec3 on_face = to_face(point, face);
     int root_exponent = int(deep_cubemap.root_exponent), levels = int(deep_cubemap.last_level);
     float resolution = float(1 << (root_exponent + 2 * levels));
-    ivec2 finest = ivec2(clamp((seen.xy / max(seen.z, 1e-30) * 0.5 + 0.5) * resolution, 0.0, resolution - 1.0));
+    ivec2 finest = ivec2(clamp((on_face.xy / max(on_face.z, 1e-30) * 0.5 + 0.5) * resolution, 0.0, resolution - 1.0));
     uint index = dense_cell_index(face, finest >> (2 * levels), 0, 1 << root_exponent);
     for (int level = 1; level <= levels; ++level) {
         uint content = cubemap_cell(index).content;

@@ -42,7 +42,7 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
     bool outwards = depth.y >= 0.0;
     ivec2 bins = ivec2(0);
     int bin = 0;
-    uint seen = 0u;
+    uint visited_flag = 0u;
     if (content_kind(cell.content) == CELL_BINS) {
         bins = bins_between(depths, cell);
         bin = outwards ? bins.x : bins.y;
@@ -65,7 +65,7 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
                 ++entries_read;
 #endif
                 uvec2 entry = cell_entry(place);
-                if ((entry.y >> 16) >= wanted.x && (entry.y & 0xffffu) <= wanted.y && (entry.x & seen) == 0u) {
+                if ((entry.y >> 16) >= wanted.x && (entry.y & 0xffffu) <= wanted.y && (entry.x & visited_flag) == 0u) {
                     triangle = cluster_first(entry.x & ENTRY_TRIANGLE);
 #ifdef TRIANGLE_CLUSTERS
                     next = triangle + 1u;
@@ -85,7 +85,7 @@ void test_cell(CubemapWalk walk, CubemapCell cell, uvec2 depths, vec2 depth, ino
                 bins_between(depth_codes(hit_depth + vec2(-1.0, 1.0) * walk.cubemap.margin, walk.cubemap), cell);
             if (outwards ? hit_bins.y <= bin : hit_bins.x >= bin) return;
         }
-        seen = outwards ? ENTRY_IN_BIN_BEFORE : ENTRY_IN_BIN_BEHIND;
+        visited_flag = outwards ? ENTRY_IN_BIN_BEFORE : ENTRY_IN_BIN_BEHIND;
         bin += outwards ? 1 : -1;
         first = bin_ends[start + uint(bin)];
         end = bin_ends[start + uint(bin) + 1u];

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shadow rays go on beyond a transparent surface, with what it lets pass. Surfaces that the camera path has passed
-// count as well, as in Cycles.
+// Continues shadow rays behind a transparent surface, weighted by its transmittance. The transparent surfaces that the
+// camera path has crossed count towards the limit as well, as in Cycles.
 
 layout(local_size_x = 64) in;
 
@@ -24,12 +24,12 @@ readonly buffer CameraPaths;
 void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
-    uint surfaces = transparents_of(camera_paths[index].depth) + parameters.passed;
-    vec3 passed = surfaces < iteration.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
+    uint surfaces = transparents_of(camera_paths[index].depth) + parameters.surface_count;
+    vec3 transmittance = surfaces < iteration.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
     Ray ray = shadow_rays[index];
-    contributions[index].rgb *= passed;
+    contributions[index].rgb *= transmittance;
     shadow_rays[index].maximum_distance = 0.0;
-    if (!(largest(passed) > 0.0)) return;
+    if (!(largest(transmittance) > 0.0)) return;
     // Closures' normals look back along the ray.
     vec3 normal = -unpack_unit_vector(closures[index].geometric_normal);
     Ray beyond = Ray(closures[index].position + closures[index].ray_offset * normal, closures[index].triangle,

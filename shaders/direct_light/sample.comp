@@ -127,9 +127,10 @@ void add_candidate(inout Candidates candidates, float weight, Arriving arriving)
 Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSelection lobes, vec3 wo, uint flags,
                             uvec4 choices) {
     float alpha = smoothest_lit(false);
-    bool looks = false;
-    for (int k = 0; k < closure_lobes(closure); ++k) looks = looks || lobe_is_specular(stored_lobe(index, k), alpha);
-    if (!looks) return NOTHING_ARRIVES;
+    bool any_specular = false;
+    for (int k = 0; k < closure_lobes(closure); ++k)
+        any_specular = any_specular || lobe_is_specular(stored_lobe(index, k), alpha);
+    if (!any_specular) return NOTHING_ARRIVES;
     uint light_set = light_set_at(closure.triangle);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     vec2 disk = sample_disk(scrambled_sobol(parameters.light_sample, pcg4d(choices + 1u)));
@@ -142,16 +143,16 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         ScatterPoint from = ScatterPoint(LitPoint(closure.position, vec3(0.0), false, light_set), 0.0, 0.0, false, 0u);
-        PassedLights passed = passed_lights(from, sampled.direction, vec2(0.0, INFINITY_DISTANCE), RAY_GLOSSY,
-                                            candidates.u, path_absorption(flags));
-        candidates.u = passed.u;
+        IntersectedLights objects = intersect_lights(from, sampled.direction, vec2(0.0, INFINITY_DISTANCE), RAY_GLOSSY,
+                                                     candidates.u, path_absorption(flags));
+        candidates.u = objects.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                          * facet_fresnel(lobe, dot(wo, normalize(wo + sampled.direction))).reflection_probability;
-        vec3 radiance = reflected * passed.chosen * passed.weights;
+        vec3 radiance = reflected * objects.chosen * objects.weights;
         add_candidate(candidates, largest(radiance),
-                      Arriving(radiance, sampled.direction, passed.distance, passed.light, NO_TRIANGLE));
+                      Arriving(radiance, sampled.direction, objects.distance, objects.light, NO_TRIANGLE));
         uint emissive;
-        Hit hit = met_emitter(closure.position, sampled.direction, closure.triangle, light_set, emissive);
+        Hit hit = intersect_emitters(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         reflected *= segment_transmittance(flags, hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
@@ -210,8 +211,8 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
     uint beyond = path.flags;
     if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
-    vec3 passed = segment_transmittance(beyond, sampled.distance);
-    return Arriving(throughput * passed * scattered * sampled.weight / choice.probability, sampled.direction,
+    vec3 transmittance = segment_transmittance(beyond, sampled.distance);
+    return Arriving(throughput * transmittance * scattered * sampled.weight / choice.probability, sampled.direction,
                     sampled.distance, choice.light, sampled.triangle);
 }
 

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much of the light arrives at the catchers that a pixel shows: what is lit as X, of what there is of them as Y
+// Visibility of light at the shadow catchers of a pixel: X weighted by visibility, Y without
 // (session/render/frame_passes.py divides one by the other).
 
 layout(local_size_x = 64) in;
@@ -22,6 +22,7 @@ void main() {
     bool catches = closure_hit(closures[index]) && (closures[index].flags & CLOSURE_CATCHES_SHADOWS) != 0u;
     if (!catches || (camera_paths[index].flags & PATH_CAMERA_TRANSPARENT) == 0u) return;
     vec3 throughput = camera_paths[index].throughput;
-    float seen = (throughput.r + throughput.g + throughput.b) / 3.0;
-    add_to_pass(PASS_SHADOW_CATCHER, index, vec3(seen * float(catcher_visibility[index]), seen, 0.0));
+    float mean_throughput = (throughput.r + throughput.g + throughput.b) / 3.0;
+    add_to_pass(PASS_SHADOW_CATCHER, index,
+                vec3(mean_throughput * float(catcher_visibility[index]), mean_throughput, 0.0));
 }

@@ -3,9 +3,9 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
-// What the camera sees first, for the passes of scene/passes.py. As in Cycles, surfaces that let more than half of the
-// light straight through are passed, and depth lies along the view axis, or in a panorama along the ray. What denoisers
-// take is that of the first surface that is not specular. The colors of all surfaces count by what of them is seen.
+// First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than
+// half of the light straight on are skipped, and depth is measured along the view axis, or in a panorama along the ray.
+// Denoising Data is of the first surface that is not specular. Colors add up over all surfaces by their throughput.
 
 layout(local_size_x = 64) in;
 
@@ -41,8 +41,9 @@ const uint COLORS = 1u << PASS_DIFFUSE_COLOR | 1u << PASS_GLOSSY_COLOR | 1u << P
 
 uint index;    // in the band
 uvec2 counts;  // with this iteration
-bool hit;      // else the path passed all by
+bool hit;      // the ray of the path hits a surface
 
+// Value of the first surface, for passes of the kinds MEAN and FIRST. Those of the kind SUM use add_to_pass.
 void write_pass(uint which, vec4 value) {
     if (!is_on(which) || (PASS_ACCUMULATION[which] == ACCUMULATION_FIRST && !(hit && counts.y == 1u))) return;
     uint place = place_of(which, index);
@@ -59,7 +60,7 @@ void write_pass(uint which, float value) { write_pass(which, vec4(value, 0.0, 0.
 void write_pass(uint which, vec2 value) { write_pass(which, vec4(value, 0.0, 0.0)); }
 void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 
-// Make room for an iteration's path.
+// Prepare the passes for the path of an iteration: sums fade by its weight.
 void begin_iteration() {
     bool first = iteration.number_in_film == 1u;
     if (first) pass_counts[index] = uvec2(0u);
@@ -81,7 +82,7 @@ float view_depth(vec3 position) {
     return camera_is_sheared() ? dot(offset, camera_normal()) : dot(offset, camera.forward);
 }
 
-// 1 where nothing is seen for mist.
+// 0 at the start of the mist, 1 at its end.
 float mist_at(vec3 position) {
     vec3 offset = position - camera.position;
     float depth = camera.projection == PROJECTION_ORTHOGRAPHIC ? abs(dot(offset, camera.forward)) : length(offset);
@@ -89,7 +90,7 @@ float mist_at(vec3 position) {
                parameters.mist_exponent);
 }
 
-// Of the UV map in use, and 1; all 0 on meshes without one.
+// Coordinates in the UV map in use, and 1; all 0 on meshes without one.
 vec3 uv_at(Hit at) {
     TriangleAttributes corners = attributes[at.triangle];
     vec2 uv = (1.0 - at.b1 - at.b2) * corners.uv0 + at.b1 * corners.uv1 + at.b2 * corners.uv2;
@@ -109,7 +110,7 @@ void write_first_surface(Closure closure) {
     write_pass(PASS_MATERIAL_INDEX, float(materials[closure.material].pass_index));
 }
 
-// What denoisers take of a surface; whether they look no further.
+// Adds Denoising Data of a surface. Returns whether no later surface adds to it.
 bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
     vec3 albedo = closure.diffuse + closure.translucent;
     float rough = largest(albedo), total = rough;
@@ -155,20 +156,22 @@ void main() {
         return;
     }
     CameraPath path = camera_paths[index];
-    bool straight = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u, looks = looks_for_surface(path.flags);
+    bool camera_transparent = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u,
+         needs_surface = needs_first_surface(path.flags);
     bool denoised = (parameters.passes & DENOISING_DATA) == 0u
                     || (path.flags & (PATH_DENOISING_DATA_FOUND | PATH_FINAL_GATHER)) != 0u;
-    bool colored = straight && (parameters.passes & COLORS) != 0u;
-    if (!keeps_paths && !looks && denoised && !colored) return;
+    bool colored = camera_transparent && (parameters.passes & COLORS) != 0u;
+    // No pass needs the closure. A pass of later surfaces adds its condition here.
+    if (!keeps_paths && !needs_surface && denoised && !colored) return;
     Closure closure = closures[index];
     hit = closure_hit(closure);
-    uint kind =
-        (hit ? PASS_PATH_HIT : 0u) | (straight ? PASS_PATH_STRAIGHT : 0u) | (denoised ? 0u : PASS_PATH_DENOISED);
+    uint kind = (hit ? PASS_PATH_HIT : 0u) | (camera_transparent ? PASS_PATH_CAMERA_TRANSPARENT : 0u)
+                | (denoised ? 0u : PASS_PATH_DENOISED);
     if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
         path.flags |= PATH_DENOISING_DATA_FOUND;
     if (hit && colored) add_colors(path, closure, -rays[index].direction);
-    if (looks && !is_passed_by(closure)) {
+    if (needs_surface && !is_skipped(closure)) {
         path.flags |= PATH_SURFACE_FOUND;
         write_first_surface(closure);
     }

@@ -5,20 +5,20 @@
 #include "common/iteration.glsl"
 #include <Passes>
 buffer PassValues;
-// Of a band's paths before they are scattered: radiance, and what they are, as flags.
+// Paths of a band before they are scattered: their radiance, and PASS_PATH flags.
 buffer PassPaths { vec4 pass_paths[]; };
-const uint PASS_PATH_HIT = 1u, PASS_PATH_STRAIGHT = 2u, PASS_PATH_DENOISED = 4u;
+const uint PASS_PATH_HIT = 1u, PASS_PATH_CAMERA_TRANSPARENT = 2u, PASS_PATH_DENOISED = 4u;
 
 bool is_on(uint which) { return (parameters.passes & (1u << which)) != 0u; }
 
-// Where a pixel's values of a pass begin: those of a pass lie together.
+// Index of the first value of a pixel in a pass. The values of a pass are stored together.
 uint place_of(uint which, uint pixel) {
     uint before = 0u;
     for (uint other = 0u; other < which; other++) before += is_on(other) ? PASS_CHANNELS[other] : 0u;
     return before * parameters.pixels + PASS_CHANNELS[which] * pixel;
 }
 
-// To what accumulates as a sum, what one path of so many iterations finds.
+// Adds the value of one path to a pass that accumulates as SUM, at any segment.
 void add_to_pass(uint which, uint pixel, vec3 value) {
     if (!is_on(which)) return;
     uint place = place_of(which, pixel);

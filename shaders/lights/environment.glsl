@@ -5,7 +5,7 @@
 #include "common/iteration.glsl"
 #include "common/sampling.glsl"
 uniform sampler2D environment_image;
-uniform sampler2D environment_seen;
+uniform sampler2D environment_visible;
 readonly buffer EnvironmentDistribution { float environment_distribution[]; };
 
 // Cycles' equirectangular map; v grows upwards.
@@ -28,7 +28,7 @@ vec3 world_radiance(vec3 direction, bool seen) {
     if (iteration.environment_width == 0u) return iteration.world_radiance;
     vec2 at = direction_to_equirectangular(direction);
     vec3 texel;
-    if (seen) texel = textureLod(environment_seen, at, 0.0).rgb;
+    if (seen) texel = textureLod(environment_visible, at, 0.0).rgb;
     else texel = textureLod(environment_image, at, 0.0).rgb;
     return iteration.world_radiance * texel;
 }

@@ -215,9 +215,9 @@ struct ScatterPoint {
     uint bounces;                  // of the path there
 };
 
-// Radiance of all, and of one of them, chosen by the random number u, over its probability; which that is, and how far
-// off.
-struct PassedLights {
+// Light objects along a ray: the radiance of all, and that of one of them, chosen by the random number u, over its
+// probability; its number and its distance.
+struct IntersectedLights {
     vec3 radiance;
     vec3 chosen;
     uint light;
@@ -227,37 +227,38 @@ struct PassedLights {
 };
 
 // kind, leaf: by which shadow rays choose the light.
-void pass_light(inout PassedLights passed, uint number, uint kind, uint leaf, ScatterPoint from, vec3 direction,
-                vec2 distances, uint ray, vec3 absorption) {
+void intersect_light(inout IntersectedLights sum, uint number, uint kind, uint leaf, ScatterPoint from, vec3 direction,
+                     vec2 distances, uint ray, vec3 absorption) {
     Light light = lights[number];
     vec3 origin = from.lit.position;
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return;
     if (from.gathers && !is_shared_light(light, from.bounces)) return;
     float distance, pdf;
-    vec3 radiance = passed_light(light, origin, direction, distances.y, distance, pdf);
+    vec3 radiance = intersected_radiance(light, origin, direction, distances.y, distance, pdf);
     if (distance <= distances.x && light.kind != LIGHT_SUN) return;
     float way = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance - distances.x;
     if (from.pdf > 0.0 && largest(radiance) > 0.0)
         pdf *= light_probability(from.lit, from.environment_irradiance, kind, leaf);
     radiance *= exp(-absorption * way) * scatter_mis_weight(from.pdf, pdf);
-    passed.radiance += radiance;
-#ifdef REPORT_PASSED_LIGHT
-    REPORT_PASSED_LIGHT(number, radiance);
+    sum.radiance += radiance;
+#ifdef REPORT_INTERSECTED_LIGHT
+    REPORT_INTERSECTED_LIGHT(number, radiance);
 #endif
     float weight = largest(radiance);
     if (!(weight > 0.0)) return;
-    passed.weights += weight;
-    if (!reservoir_accept(weight, passed.weights, passed.u)) return;
-    passed.chosen = radiance / weight;
-    passed.light = number;
-    passed.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
+    sum.weights += weight;
+    if (!reservoir_accept(weight, sum.weights, sum.u)) return;
+    sum.chosen = radiance / weight;
+    sum.light = number;
+    sum.distance = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance;
 }
 
-// The light objects that a ray passes between two distances; they hide nothing, and the camera sees all. from: in the
-// light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree: one
-// loop, since drivers without calls have the code of a light as often as it stands here.
-PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u, vec3 absorption) {
-    PassedLights passed = PassedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
+// Intersects a ray with the light objects between two distances. They occlude nothing, and the camera sees all. from:
+// in the light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree:
+// one loop, since drivers without calls have the code of a light as often as it stands here.
+IntersectedLights intersect_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u,
+                                   vec3 absorption) {
+    IntersectedLights sum = IntersectedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint sun = distances.y >= INFINITY_DISTANCE ? 0u : iteration.sun_count;
     uint node = iteration.light_tree_leaves > 0u ? 1u : 0u;  // 0: none left
@@ -279,16 +280,16 @@ PassedLights passed_lights(ScatterPoint from, vec3 direction, vec2 distances, ui
             if (node == 1u) node = 0u;
         }
         if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, from.lit.light_set)))
-            pass_light(passed, at.member, kind, leaf, from, direction, distances, ray, absorption);
+            intersect_light(sum, at.member, kind, leaf, from, direction, distances, ray, absorption);
     }
-    return passed;
+    return sum;
 }
 
 // --- emissive triangles that a ray meets ---------------------------------------------------------------
 
 // The nearest of those that smooth surfaces look for, as a hit of the watertight test; from_triangle: where the ray
 // begins, which it does not meet; on an object in a light set. emissive: its number among emissive_triangles[].
-Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set, out uint emissive) {
+Hit intersect_emitters(vec3 origin, vec3 direction, uint from_triangle, uint light_set, out uint emissive) {
     Hit nearest = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
     if (iteration.triangle_tree_leaves == 0u) return nearest;
     WatertightRay ray = make_watertight_ray(origin, direction);
@@ -315,8 +316,8 @@ Hit met_emitter(vec3 origin, vec3 direction, uint from_triangle, uint light_set,
     return nearest;
 }
 
-// What a ray passes on so far a way through what absorbs. from: where it was scattered.
+// Radiance of the light objects that a ray intersects on its way through a medium. from: where it was scattered.
 vec3 visible_light(ScatterPoint from, Ray way, float far, uint ray, vec3 absorption) {
     float gone = distance(from.lit.position, way.origin);
-    return passed_lights(from, way.direction, vec2(gone, gone + far), ray, 0.0, absorption).radiance;
+    return intersect_lights(from, way.direction, vec2(gone, gone + far), ray, 0.0, absorption).radiance;
 }

@@ -456,8 +456,8 @@ float emissive_triangle_pdf(vec3 point, uint triangle) {
 
 // Radiance of a light object without nodes that a ray passes within its length, where it does, and the pdf in
 // 1/sr with which sample_light gives the ray's direction.
-vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
-                        out float pdf) {
+vec3 intersected_plain_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
+                             out float pdf) {
     pdf = distance = 0.0;
     if (light.kind == LIGHT_SUN) {
         float solid_angle = 2.0 * PI * (1.0 - light.cosine_cone);
@@ -501,9 +501,10 @@ vec3 passed_plain_light(Light light, vec3 origin, vec3 direction, float maximum_
     return light.strength * attenuation_toward(light, to_light);
 }
 
-// The same of a light that may have nodes.
-vec3 passed_light(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance, out float pdf) {
-    vec3 radiance = passed_plain_light(light, origin, direction, maximum_distance, distance, pdf);
+// The same for a light that may have nodes.
+vec3 intersected_radiance(Light light, vec3 origin, vec3 direction, float maximum_distance, out float distance,
+                          out float pdf) {
+    vec3 radiance = intersected_plain_light(light, origin, direction, maximum_distance, distance, pdf);
     vec3 from_center = origin + distance * direction - light.position;
     return radiance * distance_factor(light, distance) * emitted_factor(light, from_center, -direction);
 }

@@ -115,22 +115,22 @@ MicrofacetLobe metal_lobe(Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool 
 float relative_ior(ClosureBuilder builder, float ior) { return builder.backfacing ? 1.0 / ior : ior; }
 
 // tint: of the reflectance at normal incidence; repeated: of light that facets send to each other; relative: index.
-MicrofacetLobe glass_lobe(Microfacets at, vec3 reflected, vec3 passed, vec3 tint, vec3 repeated, float relative,
+MicrofacetLobe glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3 tint, vec3 repeated, float relative,
                           bool multiscatter) {
     if (multiscatter) {
         float roughness = sqrt(at.alpha);
         vec3 factor = restored_energy(max(glass_albedo(relative, roughness, at.cosine), 0.05),
                                       glass_average_albedo(relative, roughness), repeated);
         reflected *= factor;
-        passed *= factor;
+        transmitted *= factor;
     }
-    return microfacet_lobe(at, LOBE_GLASS, reflected, passed, tint, relative);
+    return microfacet_lobe(at, LOBE_GLASS, reflected, transmitted, tint, relative);
 }
 
 // reflectance: of the film.
-MicrofacetLobe covered_glass_lobe(Microfacets at, vec3 reflected, vec3 passed, vec3 reflectance, float relative) {
+MicrofacetLobe covered_glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3 reflectance, float relative) {
     vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
-    return microfacet_lobe(at, LOBE_COATED_GLASS, reflected, passed, f0, relative);
+    return microfacet_lobe(at, LOBE_COATED_GLASS, reflected, transmitted, f0, relative);
 }
 
 vec3 glass_film_reflectance(ClosureBuilder builder, Microfacets at, Film film, float ior) {

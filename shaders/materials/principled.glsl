@@ -159,16 +159,17 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     }
     LAYER_IS_DONE(metal)
     if (p.transmission > 0.0) {
-        vec3 share = weight * p.transmission, passed = sqrt(max(p.base_color, vec3(0.0)));
+        vec3 glass_weight = weight * p.transmission, refracted_color = sqrt(max(p.base_color, vec3(0.0)));
         Microfacets even = Microfacets(at.normal, at.packed_normal, ISOTROPIC, p.roughness * p.roughness, at.cosine);
         float relative = relative_ior(builder, p.ior);
         if (p.thin_wall)
-            thin_glass_lobes(builder, even, share, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
+            thin_glass_lobes(builder, even, glass_weight, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
                              sheet);
-        else if (film) glass = covered_glass_lobe(even, share, share * passed, films.glass, relative);
+        else if (film)
+            glass = covered_glass_lobe(even, glass_weight, glass_weight * refracted_color, films.glass, relative);
         else
-            glass =
-                glass_lobe(even, share, share * passed, p.specular_tint, min(passed, 1.0), relative, p.multiscatter);
+            glass = glass_lobe(even, glass_weight, glass_weight * refracted_color, p.specular_tint,
+                               min(refracted_color, 1.0), relative, p.multiscatter);
         weight *= 1.0 - p.transmission;
     }
     LAYER_IS_DONE(glass)

@@ -97,8 +97,8 @@ void make_round(inout Surface surface) {
     bool strand = is_strand(surface);
     if (!strand && !is_point(surface)) return;
     vec3 normal = strand ? strand_normal(strand_at(surface)) : point_normal(surface);
-    float seen = dot(normal, surface.viewer);
-    if (seen < 1e-3) normal = normalize(normal + (1e-3 - seen) * surface.viewer);
+    float cosine = dot(normal, surface.viewer);
+    if (cosine < 1e-3) normal = normalize(normal + (1e-3 - cosine) * surface.viewer);
     surface.normal = surface.geometric = normal;
     surface.backfacing = false;
 }

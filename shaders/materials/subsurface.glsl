@@ -23,8 +23,8 @@ vec3 dipole_albedo(vec3 reflected, float a) {
         low = mix(low, middle, less);
         high = mix(middle, high, less);
     }
-    vec3 found = mix(middle, vec3(0.0), lessThan(reflected, vec3(1e-4)));
-    return mix(found, vec3(0.999999), greaterThanEqual(reflected, vec3(0.995)));
+    vec3 albedo = mix(middle, vec3(0.0), lessThan(reflected, vec3(1e-4)));
+    return mix(albedo, vec3(0.999999), greaterThanEqual(reflected, vec3(0.995)));
 }
 
 // Mean free paths, as in Cycles: the radius, or of skin that by which a dipole has it, else such as look like those of

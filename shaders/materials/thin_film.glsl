@@ -80,7 +80,7 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
     // How often loops go round is left open for drivers, which else have what interferes six times.
     int polarizations = cosine_film > 0.0 ? 2 : 0, orders = thickness > 0.0 ? 3 : 0;
     for (int k = 0; k < polarizations; ++k) {
-        float outer = first[k] * first[k], passed = 1.0 - outer;
+        float outer = first[k] * first[k], transmitted = 1.0 - outer;
         vec3 phase, inner = metal_reflectance(metal, cosine_film, film, k == 1, phase);
         if (!on_metal) {
             inner = vec3(second[k] * second[k]);
@@ -89,8 +89,8 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
         // Half a wave where the amplitude changes its sign; reflected from within the film, the outer side turns it
         // over.
         vec3 shift = vec3(first[k] > 0.0 ? PI : 0.0) + phase;
-        vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = passed * passed * inner / (1.0 - both),
-             term = repeated - passed;
+        vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = transmitted * transmitted * inner / (1.0 - both),
+             term = repeated - transmitted;
         sum += outer + repeated;
         for (int order = 1; order <= orders; ++order) {
             term *= sqrt(both);

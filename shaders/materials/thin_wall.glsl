@@ -16,7 +16,8 @@ float sheet_alpha(float alpha, float ior) {
 
 // Reflected and passed share of a sheet: Fresnel's at both sides, absorption along the way between them (color at
 // normal incidence), and all that goes to and fro within.
-void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out vec3 reflected, out vec3 passed) {
+void sheet_albedos(float cosine, vec3 color, vec3 tint, Film film, float ior, out vec3 reflected,
+                   out vec3 transmitted) {
     float within2 = 1.0 - (1.0 - cosine * cosine) / (ior * ior);
     vec3 outside = tinted_dielectric(cosine, ior, tint), inside = outside;
     if (film.thickness > THINNEST_FILM) {
@@ -26,24 +27,25 @@ void sheet_shares(float cosine, vec3 color, vec3 tint, Film film, float ior, out
             thin_film_reflectance(sqrt(max(within2, 0.0)), film.thickness, 1.0, film.ior / ior, 1.0 / ior, NO_METAL);
     }
     vec3 kept = within2 > 0.0 ? pow(color, vec3(inversesqrt(within2))) : vec3(0.0), returned = inside * kept;
-    passed = kept * (1.0 - outside) * (1.0 - inside) / max(1.0 - returned * returned, 1e-6);
-    reflected = outside + passed * returned;
+    transmitted = kept * (1.0 - outside) * (1.0 - inside) / max(1.0 - returned * returned, 1e-6);
+    reflected = outside + transmitted * returned;
 }
 
 // Facets have the reflectance of the whole; the lost energy is always restored. What passes straight is added.
 void thin_glass_lobes(inout ClosureBuilder builder, Microfacets at, vec3 weight, vec3 color, vec3 tint, Film film,
                       float ior, out MicrofacetLobe mirror, out MicrofacetLobe sheet) {
-    vec3 reflected, passed;
-    sheet_shares(at.cosine, color, tint, film, ior, reflected, passed);
+    vec3 reflected, transmitted;
+    sheet_albedos(at.cosine, color, tint, film, ior, reflected, transmitted);
     vec3 factor = multiscatter_factor(white_albedos(at), min(tint, vec3(1.0)));
     mirror = mirror_lobe(at, weight * reflected * factor);
     sheet = NO_LOBE;
     at.alpha = sheet_alpha(at.alpha, ior);
     // Seen by the camera itself it is no hole in the picture.
     if (at.alpha > STRAIGHTEST_SHEET || builder.seen_by_camera)
-        sheet = microfacet_lobe(at, LOBE_SHEET, weight * passed * multiscatter_factor(white_albedos(at), vec3(1.0)),
-                                vec3(0.0), vec3(1.0), 1.0);
-    else builder.closure.transparent += weight * passed;
+        sheet =
+            microfacet_lobe(at, LOBE_SHEET, weight * transmitted * multiscatter_factor(white_albedos(at), vec3(1.0)),
+                            vec3(0.0), vec3(1.0), 1.0);
+    else builder.closure.transparent += weight * transmitted;
 }
 
 // Subsurface scattering within the sheet leaves on both sides; anisotropy 1: all behind, -1: all in front.

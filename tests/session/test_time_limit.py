@@ -21,7 +21,7 @@ class Film:
 
     def __init__(self):
         self.reads = 0
-        self.found_passes = ()
+        self.rendered_passes = ()
 
     def read_radiance(self):
         self.reads += 1

@@ -99,7 +99,7 @@ class GrowingBuffer:
 
     @property
     def limit(self) -> int:
-        """The most bytes that it may have."""
+        """Largest size that the buffer may have, bytes."""
         return self._context.array_limit(self._texel_bytes)
 
     @property

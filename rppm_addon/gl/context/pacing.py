@@ -30,7 +30,7 @@ _TIMESTAMP, _QUERY_RESULT, _QUERY_RESULT_AVAILABLE = 0x8E28, 0x8866, 0x8867
 
 @dataclass
 class Pace:
-    """How fast a program has been."""
+    """Speed of a program so far."""
 
     seconds_per_item: float | None = None
     """None where nothing is known."""

@@ -18,7 +18,7 @@ NEEDS: Mapping[str, tuple[int, str]] = {
     "GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS": (16, "storage blocks in a program"),
     "GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS": (16, "bindings of storage blocks"),
 }
-"""The least that will do, and what it is."""
+"""Smallest sufficient values of limits, with their names."""
 
 
 def refuse_small_devices(name: str, limits: Mapping[str, Any]) -> None:

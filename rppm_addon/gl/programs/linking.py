@@ -99,8 +99,9 @@ class Linker:
         said = ctypes.create_string_buffer(max(length.value, 1))
         log_of(item, len(said), None, said)
         words = source.name_lines(said.value.decode(errors="replace")).strip()
+        alarms = [line for line in words.splitlines() if _FALSE_ALARM.search(line) is None]
         if not succeeded.value:
-            raise CompileError(f"{source.files[0]}: {words or 'the driver does not say why it is refused'}")
+            reason = "\n".join(alarms) or "the driver refuses it without a reason"
+            raise CompileError(f"{source.files[0]}: {reason}")
         if words:
-            alarming = any(_FALSE_ALARM.search(line) is None for line in words.splitlines())
-            log.log(logging.WARNING if alarming else logging.DEBUG, "%s: %s", source.files[0], words)
+            log.log(logging.WARNING if alarms else logging.DEBUG, "%s: %s", source.files[0], words)

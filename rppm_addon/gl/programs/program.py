@@ -95,7 +95,9 @@ class Program:
             self.before_first_run()
             self.before_first_run = None
         if missing := self.blocks - buffers.keys():
-            raise ValueError(f"{self.name}: buffers missing {sorted(missing)}")
+            raise ValueError(
+                f"{self.name}: buffers missing {sorted(missing)}; pass the blocks of the StageContext and of the stage"
+            )
         for block, binding in self._bindings.items():
             buffers[block].bind_to_storage_buffer(binding)
         for sampler, unit in self._textures.items():

@@ -24,7 +24,7 @@ class ProgramMaker:
         """GL function that sets a uint uniform of a program, at a location."""
         self._linker = Linker(context)
         self.compiler: BackgroundCompiler | None = None
-        """Where there is a core to spare."""
+        """Compiler in the background; None where no core is to spare."""
         if can_compile_ahead(context, self.cache):
             self.compiler = BackgroundCompiler(lambda: CompilerContext(context.another()))
             self._dispatch = EmptyDispatch(context)

@@ -101,7 +101,7 @@ class ProgramLibrary:
 
     @property
     def pacing(self) -> Pacing:
-        """How programs are run."""
+        """Pacing by which programs are run."""
         return self._maker.pacing
 
     def hurry(self, hurries: bool) -> None:

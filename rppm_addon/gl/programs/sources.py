@@ -77,7 +77,7 @@ class Source:
         """Invocations of a work group. Raises ShaderError when the source says none."""
         match = _LOCAL_SIZE.search(self.text)
         if match is None:
-            raise ShaderError(f"{self.files[0]}: no local_size_x")
+            raise ShaderError(f"{self.files[0]}: no local_size_x; declare layout(local_size_x = 64) in")
         return int(match.group(1))
 
     def name_lines(self, message: str) -> str:
@@ -138,7 +138,8 @@ class _Expansion:
         try:
             text = self._inserts.get(name) or (SHADER_FOLDER / name).read_text(encoding="utf-8")
         except OSError as error:
-            raise ShaderError(f"{includer}: cannot include {name} ({error.strerror})") from error
+            problem = f"cannot include {name}" if self.files else "there is no such file below shaders/"
+            raise ShaderError(f"{includer}: {problem} ({error.strerror})") from error
         number = len(self.files)
         self.files.append(name)
         if number:
@@ -159,7 +160,9 @@ class _Expansion:
             elif match[2] in self._declared:
                 self.lines.append(self._declare(match[2]))
             else:
-                raise ShaderError(f"{place}: there is no record and there are no constants {match[2]}")
+                raise ShaderError(
+                    f"{place}: {match[2]} is neither a Record nor Constants; declare it in a module that is imported"
+                )
 
     def _declare(self, name: str) -> str:
         """GLSL of a record, after those that it consists of, or of constants; empty where it is there."""
@@ -175,7 +178,9 @@ class _Expansion:
         if not rest.startswith(";"):
             return f"{BLOCK_LAYOUT} {declaration} {rest}"
         if name not in StorageBlock.registry:
-            raise ShaderError(f"{place}: there is no storage block {name}")
+            raise ShaderError(
+                f"{place}: there is no storage block {name}; declare it as a StorageBlock, or give its members here"
+            )
         shared = StorageBlock.registry[name]
         structs = "".join(f"{self._declare(record.name)} " for record in shared.records)
         return f"{structs}{BLOCK_LAYOUT} {declaration} {{ {shared.members} }}{rest}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""DirectCameraHits, by whichever way the camera's first hits are found."""
+"""DirectCameraHits: base class of the stages that compute the camera's first hits."""
 
 import numpy as np
 
@@ -13,15 +13,15 @@ from .importons import Importons
 
 
 class CameraHits(Stage):
-    """Common base of the stages that find the camera's first hits, such as GBuffer and PrimaryRays."""
+    """Base of the stages that compute the camera's first hits, such as GBuffer and PrimaryRays."""
 
     memory_group = "camera paths"
     camera = StorageBuffer("camera", CAMERA_VIEW, 1, block="Camera")
 
     def raster(self, band: Band) -> CameraRaster | None:
-        """Where the band's first hits lie, for photons to be splatted onto; None where they lie on no raster."""
+        """Raster of the band's first hits, onto which photons are splatted; None where they lie on none."""
         raise NotImplementedError
 
     def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:
-        """First rays, hits and camera paths of the band that ``view`` (CAMERA_VIEW) shows."""
+        """Compute the first rays and hits of a band in a view (CAMERA_VIEW), and begin its camera paths."""
         raise NotImplementedError

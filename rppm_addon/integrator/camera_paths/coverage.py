@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much of the disks in which photons count lies on surfaces, where gathering rays end."""
+"""Fraction of the disks in which photons count that lies on surfaces, at the ends of the final gather's rays."""
 
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
@@ -11,7 +11,7 @@ from .importons import Importons
 Record("CoverageParameters", segment="uint", first_pixel="uint")
 
 MAX_PROBES = 8
-"""Points of a disk that are looked at; of disks with less surface photons stay too dark."""
+"""Largest number of points that a disk is probed at; disks with less surface stay too dark."""
 Constants("Coverage", MAX_PROBES=MAX_PROBES)
 
 

@@ -75,7 +75,7 @@ class GBuffer(CameraHits):
         self._framebuffer = self.own(gl.framebuffer([self._visibility], depth))
 
     def raster(self, band: Band) -> CameraRaster | None:
-        """Where the band's first hits lie, for photons to be splatted onto."""
+        """Raster of the band's first hits, onto which photons are splatted."""
         return CameraRaster(self.camera.buffer, band.columns, band.rows)
 
     def find(self, context: StageContext, importons: Importons, view: np.ndarray, band: Band) -> None:

@@ -29,7 +29,7 @@ def _band_aovs(sizes: StageSizes) -> int:
 
 
 class Importons(Stage):
-    """Camera paths of one band and the importon that each leaves in the current segment."""
+    """Camera paths of one band, with the importon that each leaves in the current segment."""
 
     memory_group = "camera paths"
     remedy = "lower the resolution"
@@ -38,8 +38,8 @@ class Importons(Stage):
     paths = StorageBuffer("camera paths", CAMERA_PATH, band_pixels, block="CameraPaths")
     closures = StorageBuffer("camera closures", CLOSURE, band_pixels, block="Closures")
     exit_closures = StorageBuffer("exit closures", CLOSURE, exiting_pixels, block="ExitClosures")
-    """Where the paths have come out that went below a surface, else as ``closures``; where no light goes below
-    surfaces there are none."""
+    """Closures at the exits of subsurface walks, and those of ``closures`` for other paths; empty where no material has
+    subsurface scattering."""
     importons = StorageBuffer("importons", IMPORTON, band_pixels, block="Importons")
     radiances = StorageBuffer("band radiance", "vec4", band_pixels, block="Radiances")
     aovs = StorageBuffer("band AOVs", "float", _band_aovs, block="AovValues")
@@ -53,18 +53,18 @@ class Importons(Stage):
         self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (band_pixels(sizes), 1)).tobytes()
 
     def clear(self) -> None:
-        """Forget the radiance of the band before, and its AOVs."""
+        """Clear the radiance and the AOVs of the previous band."""
         self.radiances.buffer.write(self._opaque)
         if self.aovs.size:
             self.aovs.clear()
 
     @property
     def lit_blocks(self) -> dict[str, Bindable]:
-        """The blocks, for programs that look at where light comes to the paths, which may be at another place."""
+        """The blocks for programs that light the paths: Closures are those at the exits of subsurface walks."""
         return self.blocks | {"Closures": self._lit_closures.buffer}
 
     def trace(self, context: StageContext, segment: int) -> bool:
-        """Find what the paths that go on hit; whether any may do so."""
+        """Trace the rays of the active paths. Returns False where no path is active."""
         with context.timers.stage("camera tracing"):
             self.active.keep(self.rays.buffer)
             if not self.active.bound(segment):
@@ -73,11 +73,11 @@ class Importons(Stage):
             return True
 
     def find_hits(self, context: StageContext) -> None:
-        """Find what the rays of the active paths hit."""
+        """Intersect the rays of the active paths with the scene."""
         context.acceleration.trace(self.rays.buffer, self.hits.buffer, self.active)
 
     def resolve(self, context: StageContext, iteration: Iteration, segment: int) -> None:
-        """Hits to closures."""
+        """Turn the hits of a segment into closures."""
         with context.timers.stage("camera resolve"):
             context.resolve.run(
                 self.rays.buffer,
@@ -90,7 +90,7 @@ class Importons(Stage):
             )
 
     def scatter(self, context: StageContext, band: Band, segment: int) -> None:
-        """Collect emission, leave importons, and set off the specular rays of the next segment."""
+        """Add emission, leave importons, and sample the rays of the next segment."""
         with context.timers.stage("camera scattering"):
             self.active.run(
                 self._scatter,

@@ -123,7 +123,7 @@ class Subsurface(Stage):
         active.run(enter, blocks, parameters)
         self._entered.take(active, self._rays.buffer)
         walking = self._walking
-        walking.require(active.most, to_keep=True)
+        walking.require(active.capacity, to_keep=True)
         walking.take(self._entered, self._rays.buffer)
         first = 0
         for end in _LAST_STEPS:

@@ -34,7 +34,7 @@ StorageBlock("KeptPaths", "ActivePathsHeader kept; uint kept_paths[];")
 Record("CountParameters", count="uint")
 
 SEGMENTS_AT_ONCE = 4
-"""A GPU is asked for the number of active paths this seldom, as it has to be waited for."""
+"""Segments between two readings of the number of active paths from a GPU, each of which waits for the GPU."""
 _GROUPS = ACTIVE_PATHS_HEADER.offset("groups")
 _FIRST = ACTIVE_PATHS_HEADER.size // 4
 
@@ -54,10 +54,10 @@ class ActivePaths(BufferSet):
         self._keep = library.compute("common/active_paths/keep.comp")
         self._lists = [self.own(GrowingBuffer(context, name, remedy))]
         """The list, and where there is to be ``keep``, room for the next one."""
-        self.most = 0
-        """Paths that the list may have: as many as the list began with."""
+        self.capacity = 0
+        """Largest number of paths that the list may have: as many as it began with."""
         self._bound = self._asked = 0
-        """The last answer of ``bound``, and the segment that the device was asked in for it."""
+        """Result of the last call of ``bound``, and the segment in which the device was read for it."""
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -70,7 +70,7 @@ class ActivePaths(BufferSet):
         return ACTIVE_PATHS_HEADER.size + 4 * paths
 
     def require(self, paths: int, to_keep: bool = False) -> None:
-        """Make room for so many, and for ``keep`` to leave some of them out; what was listed is gone.
+        """Make room for a number of paths, and for ``keep`` to leave some of them out; what was listed is gone.
 
         Raises DeviceError.
         """
@@ -83,16 +83,16 @@ class ActivePaths(BufferSet):
     def fill(self, paths: int) -> None:
         """List the paths from 0 to below ``paths``."""
         self.require(paths)
-        self.most = self._bound = paths
+        self.capacity = self._bound = paths
         self._asked = 0
         groups = -(-paths // GROUP_SIZE)
         self._begin(self._lists[0], paths, (min(groups, GROUPS_PER_ROW), -(-groups // GROUPS_PER_ROW), 1))
         self._fill.run(paths, {"KeptPaths": self.buffer}, {"count": paths})
 
-    def begin(self, most: int) -> None:
-        """List none, for a program to list up to so many (shaders/common/active_paths/kept.glsl)."""
-        self.require(most)
-        self.most = most
+    def begin(self, capacity: int) -> None:
+        """Empty the list, for a program to list up to ``capacity`` paths (shaders/common/active_paths/kept.glsl)."""
+        self.require(capacity)
+        self.capacity = capacity
         self._begin(self._lists[0], 0, (0, 0, 1))
 
     def keep(self, rays: moderngl.Buffer) -> None:
@@ -102,8 +102,8 @@ class ActivePaths(BufferSet):
 
     def take(self, paths: "ActivePaths", rays: moderngl.Buffer) -> None:
         """List those of another list's paths whose rays (RAY, by path) are active."""
-        self.require(paths.most)
-        self.most = paths.most
+        self.require(paths.capacity)
+        self.capacity = paths.capacity
         self._keep_of(paths, self._lists[0], rays)
 
     def _keep_of(self, paths: "ActivePaths", kept: GrowingBuffer, rays: moderngl.Buffer) -> None:
@@ -122,18 +122,17 @@ class ActivePaths(BufferSet):
 
     @property
     def known_empty(self) -> bool:
-        """Whether nothing lives any more, where that is known at no cost.
+        """Whether the list is empty, where that is known at no cost.
 
-        A driver on the processor has always done what it was given. A GPU would have to be waited for, longer than
-        dispatches of no groups take it.
+        A software driver has always finished its work. Waiting for a GPU would take longer than empty dispatches.
         """
         return self._context.is_software and self.read_count() == 0
 
     def bound(self, segment: int) -> int:
-        """No fewer paths than a filled list has in a segment; 0 once it is known that it has none. To be asked in every
-        segment.
+        """Upper bound of the number of paths of a filled list in a segment; 0 once the list is known to be empty.
 
-        A driver on the processor tells exactly, a GPU every few segments (SEGMENTS_AT_ONCE).
+        Call it in every segment. The bound is exact on a software driver; a GPU is read every few segments
+        (SEGMENTS_AT_ONCE).
         """
         if segment != self._asked and (self._context.is_software or segment % SEGMENTS_AT_ONCE == 0):
             self._bound, self._asked = self.read_count(), segment
@@ -141,11 +140,11 @@ class ActivePaths(BufferSet):
 
     @property
     def known_count(self) -> int:
-        """Paths that are listed where that is known at no cost, else ``most``."""
-        return self.read_count() if self._context.is_software else self.most
+        """Number of listed paths where that is known at no cost, else ``capacity``."""
+        return self.read_count() if self._context.is_software else self.capacity
 
     def read_count(self) -> int:
-        """How many paths are listed. Waits for the device."""
+        """Number of listed paths. Waits for the device."""
         return int(self._lists[0].read(ACTIVE_PATHS_HEADER.dtype, 1)["count"][0])
 
     def read(self) -> np.ndarray:

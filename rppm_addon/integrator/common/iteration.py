@@ -4,11 +4,11 @@
 from dataclasses import dataclass
 
 LEARNING_ITERATIONS = 16
-"""Later iterations do not learn: given the seed, they depend on these only."""
+"""Iterations from which later ones learn: given the seed, all later ones depend on these only."""
 
 
 def learns_after(number: int) -> bool:
-    """Whether what the iterations so far have tallied is put to use after this one: 1, 2, 4, ..."""
+    """Whether the guide learns from the tallies of all iterations so far after iteration ``number``: 1, 2, 4, ..."""
     return number <= LEARNING_ITERATIONS and number & (number - 1) == 0
 
 
@@ -22,13 +22,14 @@ class Iteration:
     photon_count: int = 0
     """Photons that leave the lights; none for the pilot view."""
     skipped: int = 0
-    """So many iterations come before those of the film."""
+    """Number of iterations before the first one of the film."""
     direct_world_flux: float = 0.0
-    """W of a photon of the world that contributes, where photons share the world's direct light with rays; else 0."""
+    """Flux of a photon of the world that contributes, W, where both photons and rays bring the world's direct light;
+    else 0."""
     shadow_rays: int = 1
     """Shadow rays of each vertex of a camera path."""
     weighs_noise: bool = False
-    """Whether the noise of photons is measured apart from the rest, for later iterations to choose their photons by."""
+    """Whether the noise of photons is measured apart from other noise, to choose later numbers of photons by it."""
 
     @property
     def number_in_film(self) -> int:

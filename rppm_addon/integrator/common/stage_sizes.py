@@ -22,17 +22,17 @@ class StageSizes:
     height: int
     photons: int = 0
     """Largest number of photons of an iteration."""
-    segments: int = 0
-    """Segments of a photon path that nothing but its bounces limits, the first leaving the light."""
+    photon_segments: int = 0
+    """Segments of a photon path without transparent surfaces, the first leaving the light."""
     passes: tuple[RenderPass, ...] = ()
     has_catchers: bool = False
     """Whether objects catch shadows."""
     first_camera_hits: FirstCameraHits | None = FirstCameraHits.AUTOMATIC
-    """How the camera's first hits are found; None where they do not lie on a raster."""
+    """How the camera's first hits are computed; None where they do not lie on a raster."""
     has_texels: bool = False
-    """Whether they are given, as places on a mesh."""
+    """Whether camera paths begin at texels of a mesh (baking)."""
     measures_noise: bool = False
-    """Whether the picture ends with its noise."""
+    """Whether the noise threshold ends the render."""
     is_filtered: bool = False
     """Whether the film keeps what the noise filter of viewports takes."""
     links_lights: bool = False
@@ -48,7 +48,7 @@ class StageSizes:
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
         """Return the sizes of a scene."""
         width, height = scene.camera.resolution
-        passes = scene.settings.found_passes
+        passes = scene.settings.rendered_passes
         if demands.is_filtered:
             passes = with_filtered(passes)
         return cls(
@@ -70,12 +70,12 @@ class StageSizes:
 
     @property
     def has_scattered_light(self) -> bool:
-        """Whether a pass of light is wanted by what the first surface made of it."""
+        """Whether any pass shows light by how the first surface scatters it."""
         return any(entry in SCATTERED_LIGHT for entry in self.passes)
 
     @property
     def has_caustics(self) -> bool:
-        """Whether that of caustics is."""
+        """Whether the pass Caustics is rendered."""
         return CAUSTICS in self.passes
 
     @property
@@ -137,6 +137,6 @@ def photon_paths(sizes: StageSizes) -> int:
 
 
 def photon_slots(sizes: StageSizes) -> int:
-    """Places for photons that there are from the beginning: for so many segments of each path. Where paths live longer
-    they become more."""
-    return sizes.photons * min(sizes.segments, SEGMENTS_AT_ONCE)
+    """Return the number of photons for which memory is allocated at first: a few segments of each path. Longer paths
+    make the buffer grow."""
+    return sizes.photons * min(sizes.photon_segments, SEGMENTS_AT_ONCE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A look at the deep cubemap: what the camera's rays cost in it."""
+"""Costs of the camera's rays in the deep cubemap, for the pass Deep Cubemap."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the deep cubemap's center goes."""
+"""Placement of the deep cubemap's center."""
 
 from collections.abc import Iterator
 

@@ -42,10 +42,10 @@ class LightSum(enum.IntFlag):
     """Kinds of sums that are kept beside those of all light."""
 
     SCATTERED = 1
-    """By what the first surface made of it."""
+    """Sums by how the first surface scatters the light."""
     CAUSTICS = 2
     GROUPS = 4
-    """By the light group that it came from."""
+    """Sums by the light group of the source."""
 
     @classmethod
     def of(cls, sizes: StageSizes) -> "LightSum":
@@ -145,7 +145,7 @@ class SplatSums(BufferSet):
 
     @property
     def photons_for_one(self) -> int:
-        """How many photons one that is counted stands for."""
+        """Number of photons that one counted photon stands for."""
         return 2 if self.parameters["roulette"] else 1
 
     def photons_taken(self, count: int) -> np.ndarray:

@@ -159,7 +159,7 @@ class Splatting(BufferSet):
         importons.active.run(
             self._insert,
             {**photons.blocks, **self.blocks, "Importons": importons.importons},
-            {**cube, "count": importons.active.most},
+            {**cube, "count": importons.active.capacity},
         )
         self._indirect_jobs.run(
             photons.count,

@@ -141,7 +141,7 @@ class SplatTargets:
     final_gather: bool
     """Whether gathering rays may have led there, which widens the narrow radius."""
     raster: CameraRaster | None
-    """Where first hits lie on the camera's raster."""
+    """Place of first hits on the camera's raster."""
     center: np.ndarray
     """Center of the splat cubemap, which serves importons without a raster, (3,) meters; it changes no sum."""
 

@@ -22,7 +22,7 @@ from .iteration_parameters import IterationBlock
 
 @dataclass(frozen=True)
 class StageContext:
-    """The scene on the device, at the iteration's moment, and the passes shared by photons and importons."""
+    """The scene on the device at the iteration's moment, with resolve, timers and storage blocks."""
 
     scene: Scene
     geometry: Geometry
@@ -48,7 +48,7 @@ class StageContext:
 
     @property
     def settings(self) -> RenderSettings:
-        """The scene's."""
+        """Settings of the scene."""
         return self.scene.settings
 
     @property

@@ -36,10 +36,10 @@ Record(
     splits_light="uint",
 )
 
-Record("PassSurfaceParameters", passed="uint")
+Record("PassSurfaceParameters", surface_count="uint")
 
 _SURFACES_AT_ONCE = 16
-"""A GPU is asked whether any shadow ray passes surfaces still this seldom, as it has to be waited for."""
+"""Transparent surfaces between two readings of the number of shadow rays from a GPU, each of which waits for it."""
 
 
 def _pass_pixels(sizes: StageSizes) -> int:
@@ -124,8 +124,8 @@ class DirectLight(Stage):
         """Trace shadow rays through transparent surfaces, which take of what they bring."""
         rays, hits, closures, passing = self._rays, self._hits, self._closures, self._passing
         for buffer in (hits, closures):
-            buffer.require_items(self.active_rays.most)
-        passing.require(self.active_rays.most, to_keep=True)
+            buffer.require_items(self.active_rays.capacity)
+        passing.require(self.active_rays.capacity, to_keep=True)
         passing.take(self.active_rays, rays.buffer)
         most = context.settings.transparent_max_bounces
         for surfaces in range(most + 1):
@@ -144,7 +144,7 @@ class DirectLight(Stage):
             if passing.known_empty:
                 return
             context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
-            passing.run(self._pass, blocks, {"passed": surfaces})
+            passing.run(self._pass, blocks, {"surface_count": surfaces})
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return

@@ -82,7 +82,7 @@ class Cryptomatte(BufferSet):
             ASSETS: (self._assets, self._asset_names),
         }
         self._known: dict[str, list[str]] = {}
-        """By layer, the names whose identifiers lie on the device."""
+        """Names whose identifiers are on the device, by layer."""
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:

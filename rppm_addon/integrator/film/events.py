@@ -30,35 +30,40 @@ class BandEvents:
 
 
 class Listener(Stage):
-    """A stage that the loop calls for its events. It need not listen to all of them."""
+    """A stage that only reads what other stages of the loop compute, such as a pass.
 
-    def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Light of shadow rays was added to the camera paths of a segment, which are resolved and not yet scattered."""
+    StageSet lists the listeners, and the loop calls them for its events. A listener implements the methods of the
+    events that it needs.
+    """
+
+    def direct_light_added(self, events: BandEvents, segment: int) -> None:
+        """The hits of a segment of the camera paths are resolved, and shadow rays have added direct light to them; the
+        paths are not scattered yet."""
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
-        """The camera paths of a segment have met emission, left importons and gone on."""
+        """The camera paths of a segment have added emission, left importons and sampled their next rays."""
 
     def band_ended(self, events: BandEvents) -> None:
         """The radiance of a band is complete, in an iteration that enters the film."""
 
 
 class Listeners:
-    """Listeners, which are called in their order: those that come later may read what earlier ones wrote."""
+    """Listeners in the order in which they are called: later ones may read what earlier ones wrote."""
 
     def __init__(self, listeners: Iterable[Listener]) -> None:
         self._listeners = tuple(listeners)
 
-    def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Call Listener.direct_light_found of all."""
+    def direct_light_added(self, events: BandEvents, segment: int) -> None:
+        """Call Listener.direct_light_added of all listeners."""
         for listener in self._listeners:
-            listener.direct_light_found(events, segment)
+            listener.direct_light_added(events, segment)
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
-        """Call Listener.paths_scattered of all."""
+        """Call Listener.paths_scattered of all listeners."""
         for listener in self._listeners:
             listener.paths_scattered(events, segment)
 
     def band_ended(self, events: BandEvents) -> None:
-        """Call Listener.band_ended of all."""
+        """Call Listener.band_ended of all listeners."""
         for listener in self._listeners:
             listener.band_ended(events)

@@ -54,12 +54,12 @@ Constants(
 )
 
 
-_OF_SEEN_LIGHT = ("Emission", "Environment", "Denoising Albedo", *(entry.name for entry in SCATTERED_LIGHT))
-"""Passes to which light adds that camera paths meet."""
+_EMISSION_PASSES = ("Emission", "Environment", "Denoising Albedo", *(entry.name for entry in SCATTERED_LIGHT))
+"""Passes that include emission at the vertices of camera paths."""
 
 
-def _show_seen_light(sizes: StageSizes) -> bool:
-    return any(entry.name in _OF_SEEN_LIGHT for entry in sizes.passes)
+def _shows_emission(sizes: StageSizes) -> bool:
+    return any(entry.name in _EMISSION_PASSES for entry in sizes.passes)
 
 
 def _channels(sizes: StageSizes) -> int:
@@ -75,7 +75,7 @@ def _group_channels(sizes: StageSizes) -> int:
 
 
 def _pass_paths(sizes: StageSizes) -> int:
-    return band_pixels(sizes) if _show_seen_light(sizes) else 0
+    return band_pixels(sizes) if _shows_emission(sizes) else 0
 
 
 def pass_bits(sizes: StageSizes) -> int:
@@ -110,7 +110,7 @@ class Film(Listener):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._seen_light = library.compute("film/seen_light.comp") if _show_seen_light(sizes) else None
+        self._add_emission = library.compute("film/path_emission.comp") if _shows_emission(sizes) else None
         catches = sizes.has_catchers and any(entry.name == SHADOW_CATCHER for entry in sizes.passes)
         self._caught_shadows = library.compute("film/caught_shadows.comp") if catches else None
         self._context = context
@@ -118,16 +118,16 @@ class Film(Listener):
         self.passes = tuple(entry for entry in sizes.passes if entry in FILM_PASSES)
         """Requested passes that passes.comp writes."""
         self._passes = pass_bits(sizes)
-        self.found_passes = sizes.passes
-        """All that read_passes gives, and those that do not come of iterations."""
+        self.rendered_passes = sizes.passes
+        """Passes that read_passes returns, and those that do not depend on iterations (Accumulation.INSPECTION)."""
         self._groups = tuple(entry for entry in sizes.passes if entry.light_group)
         self._shows_surfaces = _shows_surfaces(sizes)
         """Whether passes show the first surfaces of paths."""
         self._is_filtered = sizes.is_filtered
 
-    def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Listener.direct_light_found: add the first surfaces that the camera paths have found in a segment, and the
-        shadows on catchers among them."""
+    def direct_light_added(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_added: add the first surfaces of camera paths to the passes, where the paths reach them
+        in this segment, and the shadows on catchers."""
         if not events.iteration.enters_film:
             return
         context, importons, band = events.context, events.importons, events.band
@@ -142,12 +142,12 @@ class Film(Listener):
             importons.active.run(self._caught_shadows, blocks, parameters)
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
-        """Listener.paths_scattered: add the light that the camera paths met in a segment."""
-        if self._seen_light is None or not events.iteration.enters_film:
+        """Listener.paths_scattered: add the emission at the vertices of a segment."""
+        if self._add_emission is None or not events.iteration.enters_film:
             return
         context, importons, band = events.context, events.importons, events.band
         importons.active.run(
-            self._seen_light,
+            self._add_emission,
             {**context.blocks, **importons.blocks},
             self._parameters(context, band, segment),
         )
@@ -183,7 +183,7 @@ class Film(Listener):
             "pixels": band.pixel_count,
             "passes": self._passes,
             "segment": segment,
-            "keeps_paths": self._seen_light is not None,
+            "keeps_paths": self._add_emission is not None,
             "mist_start": mist.start,
             "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
             "mist_exponent": mist.exponent,
@@ -242,8 +242,8 @@ class Film(Listener):
         return {entry.name: light[:, :, number].copy() for number, entry in enumerate(self._groups)}
 
     def read_pass_counts(self) -> np.ndarray:
-        """(height, width, 2) uint32: iterations that the means are of, those whose path did not end before; and those
-        of them that found a surface. (0, 0, 2) where there are no passes."""
+        """(height, width, 2) uint32: iterations whose paths the means include, and those
+        among them whose path reached a surface. (0, 0, 2) where there are no passes."""
         if not self._shows_surfaces:
             return np.zeros((0, 0, 2), np.uint32)
         return self._counts.read(np.uint32, 2)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light groups: the light of some lights, objects or the world as a picture of its own.
 
-Whatever adds to Combined adds the same to the group of the light that it comes from, so that all groups and what is in
-none add up to it.
+Whatever is added to Combined is also added to the group of its light source, so that the groups and the light of
+sources without a group add up to it.
 """
 
 from ...gl.buffer_sets import ComputeShader, StorageBuffer
@@ -21,13 +21,13 @@ Record(
     count="uint",
     quantum="float",
 )
-Record("PassedLightParameters", groups="uint")
+Record("LightObjectParameters", groups="uint")
 StorageBlock("GroupedLight", "float grouped_light[];")
-StorageBlock("SeenLight", "vec4 seen_light[];")
+StorageBlock("RadianceBefore", "vec4 radiance_before[];")
 
 _CHANNELS = 3
 _KINDS_OF_LIGHT = 2
-"""Number of kinds of light of a group: light that a pixel has received, and light that its gathering ray has found
+"""Kinds of light of a group: light of the pixel itself, and light along the ray of its final gather
 (shaders/film/light_groups/grouped.glsl)."""
 
 
@@ -36,18 +36,18 @@ def _grouped_values(sizes: StageSizes) -> int:
 
 
 class LightGroups(Listener):
-    """Finds the light of each group in a band and adds it to the film's passes."""
+    """Sums the light of each group in a band and adds it to the film's passes."""
 
     memory_group = "passes"
     remedy = "lower the resolution or have fewer light groups"
     _grouped = StorageBuffer("light of groups", "float", _grouped_values, block="GroupedLight")
-    _seen = StorageBuffer("seen light of groups", "vec4", band_pixels, block="SeenLight")
-    _found = StorageBuffer("found light of a group", "vec4", band_pixels)
-    _taken = StorageBuffer("gathered light of a group", "vec4", band_pixels)
+    _radiance_before = StorageBuffer("radiance before emission", "vec4", band_pixels, block="RadianceBefore")
+    _gathered = StorageBuffer("gathered light of a group", "vec4", band_pixels)
+    _reused = StorageBuffer("reused light of a group", "vec4", band_pixels)
     _add_direct = ComputeShader("film/light_groups/direct.comp")
-    _add_passed = ComputeShader("film/light_groups/passed.comp")
-    _add_seen = ComputeShader("film/light_groups/seen.comp")
-    _take_found = ComputeShader("film/light_groups/found.comp")
+    _add_light_objects = ComputeShader("film/light_groups/light_objects.comp")
+    _add_emission = ComputeShader("film/light_groups/emission.comp")
+    _collect = ComputeShader("film/light_groups/collect.comp")
     _accumulate = ComputeShader("film/light_groups/accumulate.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
@@ -60,12 +60,12 @@ class LightGroups(Listener):
         return bool(sizes.light_groups)
 
     def clear(self) -> None:
-        """Forget what the band before found."""
+        """Clear what the previous band has left."""
         if self.is_on:
             self._grouped.clear()
 
-    def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Listener.direct_light_found: add what DirectLight.add has added, and light objects that the paths pass."""
+    def direct_light_added(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_added: add the contributions of shadow rays, and of light objects along the rays."""
         if not events.iteration.enters_film:
             return
         context, importons, direct_light = events.context, events.importons, events.direct_light
@@ -77,18 +77,18 @@ class LightGroups(Listener):
                     self._parameters(),
                 )
             importons.active.run(
-                self._add_passed,
+                self._add_light_objects,
                 {**context.blocks, **importons.blocks, **self.blocks},
                 {"groups": self._groups},
             )
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
-        """Listener.paths_scattered: add what else the paths have met."""
+        """Listener.paths_scattered: add the emission of surfaces and of the world."""
         if not events.iteration.enters_film:
             return
         with events.context.timers.stage("light groups"):
             events.importons.active.run(
-                self._add_seen,
+                self._add_emission,
                 {**events.context.blocks, **events.importons.blocks, **self.blocks},
                 self._parameters(),
             )
@@ -105,14 +105,14 @@ class LightGroups(Listener):
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
                 }
-                self._taken.clear()
+                self._reused.clear()
                 if context.gathers:
-                    found = {**light, "GatherRadiances": self._found.buffer}
-                    self._take_found.run(band.pixel_count, found, parameters)
-                    final_gather.reuse(context, self._found.buffer, self._taken.buffer, band, events.radii)
+                    blocks = {**light, "GatherRadiances": self._gathered.buffer}
+                    self._collect.run(band.pixel_count, blocks, parameters)
+                    final_gather.reuse(context, self._gathered.buffer, self._reused.buffer, band, events.radii)
                 self._accumulate.run(
                     band.pixel_count,
-                    {**light, "Radiances": self._taken.buffer},
+                    {**light, "Radiances": self._reused.buffer},
                     parameters,
                 )
 

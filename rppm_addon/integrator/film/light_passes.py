@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Passes that separate what makes a picture's light: by what first surfaces make of it, and caustics.
+"""Passes that split the light of a picture by how the first surface scatters it, and by caustics.
 
-Whatever adds to Combined adds a part of the same to these, so that they add up to it. Light that camera paths meet is
-the film's (shaders/film/seen_light.comp).
+Whatever is added to Combined is also added to one of these passes, so that together they equal it. The film adds
+emission at the vertices of camera paths (shaders/film/path_emission.comp).
 """
 
 import enum
@@ -35,11 +35,11 @@ Record(
     part="uint",
     quantum="float",
 )
-StorageBlock("FoundCaustics", "vec4 found_caustics[];")
+StorageBlock("GatheredCaustics", "vec4 gathered_caustics[];")
 
 
 class GatherPart(enum.IntEnum):
-    """Parts of what gathering rays found."""
+    """Parts of the radiance that arrives along the rays of the final gather."""
 
     ALL = 0
     DIRECT = 1
@@ -62,11 +62,11 @@ class LightPasses(Listener):
 
     memory_group = "passes"
     remedy = "lower the resolution"
-    _found_direct = StorageBuffer("found direct light", "vec4", _scattered_pixels, block="FoundDirect")
-    _found_caustics = StorageBuffer("found caustics", "vec4", _caustic_pixels, block="FoundCaustics")
-    _taken = StorageBuffer("gathered light of passes", "vec4", band_pixels)
+    _gathered_direct = StorageBuffer("gathered direct light", "vec4", _scattered_pixels, block="GatheredDirect")
+    _gathered_caustics = StorageBuffer("gathered caustics", "vec4", _caustic_pixels, block="GatheredCaustics")
+    _reused = StorageBuffer("reused light of passes", "vec4", band_pixels)
     _add_direct = ComputeShader("film/light_passes/direct.comp")
-    _take_found = ComputeShader("film/light_passes/found.comp")
+    _collect = ComputeShader("film/light_passes/collect.comp")
     _add_gathered = ComputeShader("film/light_passes/gathered.comp")
     _add_photons = ComputeShader("film/light_passes/photons.comp")
 
@@ -81,12 +81,12 @@ class LightPasses(Listener):
         return sizes.has_scattered_light or sizes.has_caustics
 
     def clear(self) -> None:
-        """Forget what the band before found."""
+        """Clear what the previous band has left."""
         if LightSum.CAUSTICS in self._kept:
-            self._found_caustics.clear()
+            self._gathered_caustics.clear()
 
-    def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Listener.direct_light_found: add what DirectLight.add has added."""
+    def direct_light_added(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_added: add the contributions of shadow rays."""
         context, direct_light, band = events.context, events.direct_light, events.band
         by_rays = context.settings.direct_light is DirectLightMode.RAYS
         if not (events.iteration.enters_film and by_rays):
@@ -99,7 +99,7 @@ class LightPasses(Listener):
             )
 
     def band_ended(self, events: BandEvents) -> None:
-        """Listener.band_ended: add what FinalGather.add has added, and what photons have."""
+        """Listener.band_ended: add the light of the final gather and of photons."""
         context, band, sums, final_gather = events.context, events.band, events.sums, events.final_gather
         with context.timers.stage("light passes"):
             parameters = self._parameters(band) | {"quantum": sums.quantum}
@@ -107,21 +107,21 @@ class LightPasses(Listener):
             self._add_photons.run(band.pixel_count, blocks, parameters)
             if not context.gathers:
                 return
-            self._take_found.run(band.pixel_count, blocks, parameters)
-            for part, found in self._parts(final_gather).items():
-                self._taken.clear()
-                final_gather.reuse(context, found, self._taken.buffer, band, events.radii)
+            self._collect.run(band.pixel_count, blocks, parameters)
+            for part, radiances in self._parts(final_gather).items():
+                self._reused.clear()
+                final_gather.reuse(context, radiances, self._reused.buffer, band, events.radii)
                 self._add_gathered.run(
-                    band.pixel_count, {**blocks, "Radiances": self._taken.buffer}, parameters | {"part": int(part)}
+                    band.pixel_count, {**blocks, "Radiances": self._reused.buffer}, parameters | {"part": int(part)}
                 )
 
     def _parts(self, final_gather: FinalGather) -> dict[GatherPart, moderngl.Buffer]:
-        """Return the buffers of light found by gathering rays that is to be shared, by part."""
+        """Return the buffers of the radiance that neighboring pixels reuse, by part."""
         parts: dict[GatherPart, moderngl.Buffer] = {}
         if LightSum.SCATTERED in self._kept:
-            parts |= {GatherPart.ALL: final_gather.radiances.buffer, GatherPart.DIRECT: self._found_direct.buffer}
+            parts |= {GatherPart.ALL: final_gather.radiances.buffer, GatherPart.DIRECT: self._gathered_direct.buffer}
         if LightSum.CAUSTICS in self._kept:
-            parts[GatherPart.CAUSTICS] = self._found_caustics.buffer
+            parts[GatherPart.CAUSTICS] = self._gathered_caustics.buffer
         return parts
 
     def _parameters(self, band: Band, segment: int = 0) -> dict[str, float]:

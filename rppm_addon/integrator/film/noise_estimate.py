@@ -53,7 +53,7 @@ def is_in_half(number: int) -> bool:
 
 
 def count_in_half(iterations: int) -> int:
-    """How many of the first so many iterations belong to the half."""
+    """Number of iterations that belong to the half, among the first ``iterations``."""
     count = index = 0
     while index < iterations:
         end = index + _run_length(index)

@@ -59,8 +59,8 @@ class PhotonNoise(Listener):
         """Forget the iteration before."""
         self.vertices = 0
 
-    def direct_light_found(self, events: BandEvents, segment: int) -> None:
-        """Listener.direct_light_found: count the vertices of a segment of camera paths. Waits for the device in
+    def direct_light_added(self, events: BandEvents, segment: int) -> None:
+        """Listener.direct_light_added: count the vertices of a segment of camera paths. Waits for the device in
         iterations that weigh noise."""
         if events.iteration.weighs_noise:
             self.vertices += events.importons.active.read_count()

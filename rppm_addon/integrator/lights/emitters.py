@@ -176,7 +176,7 @@ class Emitters(BufferSet):
         """
         if not self._varying:
             return
-        self._rays.require_items(active.most)
+        self._rays.require_items(active.capacity)
         self._locate(rays, rays, hits, active, photons=True)
         resolve.run(self._rays.buffer, hits, closures, self._asked, iteration, 0)
         self._asked.run(self._tint_photons, {"Closures": closures, "PhotonPaths": photon_paths})
@@ -194,7 +194,7 @@ class Emitters(BufferSet):
         if not self._varying:
             return
         for buffer in (self._rays, self._hits, self._closures):
-            buffer.require_items(active.most)
+            buffer.require_items(active.capacity)
         self._locate(shadow_rays, light_triangles, self._hits.buffer, active, photons=False)
         resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
         self._asked.run(self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions})

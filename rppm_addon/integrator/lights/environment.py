@@ -47,7 +47,7 @@ def _directions_by(brightness: np.ndarray) -> np.ndarray:
     return np.concatenate([cumulated, cells.ravel()]).astype(np.float32)
 
 
-_MAP = TextureKind(["environment_image", "environment_seen"], "f4", repeats=(True, False))
+_MAP = TextureKind(["environment_image", "environment_visible"], "f4", repeats=(True, False))
 
 
 class Environment(BufferSet):
@@ -124,7 +124,7 @@ class Environment(BufferSet):
     @property
     def textures(self) -> dict[str, moderngl.Texture]:
         """The maps by the names of their samplers in lights/environment.glsl: as light, and as the camera sees it."""
-        return {"environment_image": self._textures[0], "environment_seen": self._textures[-1]}
+        return {"environment_image": self._textures[0], "environment_visible": self._textures[-1]}
 
 
 def _map_width(graph: NodeGraph, images: list[Image]) -> int:

@@ -57,10 +57,10 @@ class LightMaps(BufferSet):
         self._context = context
         self._texture: moderngl.Texture | None = None
         self.nodes: dict[int, LightNodes] = {}
-        """By the index of their light."""
+        """Results of the nodes of lights, by the index of the light."""
 
     def build(self, lights: list[Light], images: list[Image], materials: MaterialTables) -> None:
-        """Ask the nodes of all lights that have some."""
+        """Evaluate the nodes of all lights that have some."""
         with_nodes = {index: light for index, light in enumerate(lights) if light.graph is not None}
         varying = {index: light_variation(require(light.graph)) for index, light in with_nodes.items()}
         shapes = {index: _shape(with_nodes[index], varies) for index, varies in varying.items() if varies}

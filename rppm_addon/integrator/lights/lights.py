@@ -80,7 +80,7 @@ class Lights(BufferSet):
     guide = Part(Guide)
     _light_tree = Part(LightTree)
     links = StorageBuffer("light links", LIGHT_LINK, block="LightLinks")
-    """By number, where ``links_lights``."""
+    """Sets of linked lights by number, where ``links_lights``."""
     group_table = StorageBuffer("table of light groups", "uint", block="LightGroupTable")
     """LightGroupTable, where there are any."""
 

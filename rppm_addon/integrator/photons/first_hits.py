@@ -75,7 +75,7 @@ class FirstHits(BufferSet):
     ) -> FirstPhotonHits:
         if self._faster is None:
             self._traced += 1
-            if self._traced <= _TRACED_BEFORE_TRIAL or active.most < _FEWEST_TO_TRY:
+            if self._traced <= _TRACED_BEFORE_TRIAL or active.capacity < _FEWEST_TO_TRY:
                 return FirstPhotonHits.TRACED
             self._faster = self._try_both(context, rays, hits, active)
         return self._faster
@@ -127,6 +127,6 @@ class FirstHits(BufferSet):
         if route is FirstPhotonHits.TRACED:
             context.acceleration.trace(rays, hits, active)
             return
-        require(self._gbuffer).find(context.blocks, rays, hits, active.most, self._left)
+        require(self._gbuffer).find(context.blocks, rays, hits, active.capacity, self._left)
         if not self._left.known_empty:
             context.acceleration.trace(rays, hits, self._left)

@@ -81,7 +81,7 @@ _SUN_DISTANCE = 2000.0
 """Distance of a sun view's tip from the scene's center, in radii of the scene."""
 
 
-def _look(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _view_axes(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Right, up and forward."""
     aside = np.eye(3)[np.argmin(np.abs(direction))]
     right = np.cross(direction, aside)
@@ -101,7 +101,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
     if kind == LightShape.SUN:
         tip = _SUN_DISTANCE * scene_radius
         sine = math.sqrt(max(0.0, 1.0 - float(light["cosine_cone"]) ** 2))
-        views, looks = LIGHT_VIEW.zeros(1), [_look(light["normal"].astype(np.float64))]
+        views, axes_of_views = LIGHT_VIEW.zeros(1), [_view_axes(light["normal"].astype(np.float64))]
         views["center"], views["tip_distance"], views["tangent"] = scene_center, tip, 1.01 * scene_radius / tip
         # Over the scene's depth rays leave their texel's cone so far.
         slope = sine / max(float(light["cosine_cone"]), 1e-3) + 1.0 / _SUN_DISTANCE
@@ -111,7 +111,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
         cone = math.acos(max(-1.0, 1.0 - float(light["spread_scale"]))) if kind == LightShape.SPOT else math.pi
         narrow = cone < _WIDEST_CONE
         views = LIGHT_VIEW.zeros(1 if narrow else 6)
-        looks = [_look(light["normal"].astype(np.float64))] if narrow else _faces()
+        axes_of_views = [_view_axes(light["normal"].astype(np.float64))] if narrow else _faces()
         tangent = max(1.001 * math.tan(cone), 1e-3) if narrow else 1.0
         farthest = float(np.linalg.norm(light["position"] - scene_center)) + scene_radius
         rounding = _ROUNDING * farthest
@@ -120,7 +120,7 @@ def light_views(light: np.void, scene_center: np.ndarray, scene_radius: float) -
         views["min_depth"] = 16.0 * rounding
     else:
         return LIGHT_VIEW.zeros(0)
-    views["right"], views["up"], views["forward"] = (np.array(axes) for axes in zip(*looks))
+    views["right"], views["up"], views["forward"] = (np.array(axes) for axes in zip(*axes_of_views))
     return views[views["margin"] <= _WIDEST_MARGIN * scene_radius]
 
 

@@ -34,15 +34,15 @@ class PhotonEmission:
         )
 
     def apply_falloff(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:
-        """Where photons hit first: end those that a soft light does not send there, and let the distance count."""
+        """End photons at first hits that a soft light does not reach, and weight the others by their distance."""
         self._falloff.run(count, {**context.blocks, **photons}, {"count": count})
 
     def cut_soft_lights(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
-        """Where photons hit first: end those of soft lights whose place on the light something hides from there."""
+        """End photons at first hits from which their point on a soft light is occluded."""
         program = self._library.compute("photons/photon_emission/cut.comp", context.acceleration.traversal_defines)
         active.run(program, {**context.blocks, **photons})
 
     def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
-        """Where direct photons hit: mark those that came through a portal, whose light shadow rays bring."""
+        """Mark direct photons that came through a portal: shadow rays bring their light."""
         program = self._library.compute("photons/photon_emission/portal_passed.comp", {"PORTALS": 1})
         active.run(program, {**context.blocks, **photons})

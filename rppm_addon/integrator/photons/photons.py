@@ -217,7 +217,7 @@ class Photons(Stage):
         )
 
     def flux_balance(self) -> dict[str, float]:
-        """Where the flux of the last iteration went, W summed over the channels.
+        """Balance of the flux of the last iteration, W summed over the channels.
 
         ``deposited`` is what paths still carried to the vertex where a limit cut them off; ``lost`` is flux on a ray
         that no segment followed: it must be zero. ``absorbed`` is the rest, changes of index included.
@@ -233,7 +233,7 @@ class Photons(Stage):
         return {name: float(sums[name].sum(dtype=np.float64)) for name in FLUX_NAMES}
 
     def count_segments(self) -> int:
-        """How many rays the photons of the last iteration have had. Waits for the device."""
+        """Number of rays of the photons of the last iteration. Waits for the device."""
         return int(self._range.read(np.uint32, 2)[1])
 
     def read(self) -> np.ndarray:

@@ -13,13 +13,13 @@ from ...scene.motion import Deformation
 from .unit_vectors import unit_vectors
 
 MOST_TRIANGLES = 1 << 20
-"""Most triangles that all instances of a divided mesh may have together."""
+"""Largest number of triangles of all instances of a divided mesh together."""
 _OFFSCREEN = 4.0
-"""How much longer edges may be that the camera does not see."""
+"""Factor by which edges outside of the view may be longer."""
 _PERCENTILE = 90.0
-"""Percentage of the edges that are to be as short as is asked for."""
-_MAX_LOOKED_AT = 64
-"""Instances of a mesh that tell how large it is seen."""
+"""Percentage of the edges that are no longer than the dicing rate says."""
+_MAX_MEASURED = 64
+"""Largest number of instances of a mesh by which its size in the picture is measured."""
 
 
 def parts_of_edges(mesh: Mesh, instances: list[Instance], camera: Camera, rate: float) -> float:
@@ -34,7 +34,7 @@ def parts_of_edges(mesh: Mesh, instances: list[Instance], camera: Camera, rate: 
         lengths = np.linalg.norm(ends - np.roll(ends, 1, axis=1), axis=-1).ravel()
         return max(1.0, float(np.percentile(lengths, _PERCENTILE)) / dicing.edge_length)
     found = [1.0]
-    for instance in instances[:_MAX_LOOKED_AT]:
+    for instance in instances[:_MAX_MEASURED]:
         placed = ends @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
         pixels, seen = _pixels_of_edges(placed, camera)
         some, scale = (pixels[seen], 1.0) if seen.any() else (pixels, _OFFSCREEN)

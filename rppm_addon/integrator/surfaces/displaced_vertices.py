@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the nodes of materials move vertices, asked on the device."""
+"""Offsets of vertices by the displacement of materials, computed on the device."""
 
 import dataclasses
 

@@ -61,7 +61,7 @@ Record(
 
 
 class _PathKind(enum.IntEnum):
-    """Whose paths the hits are of."""
+    """Kinds of paths whose hits are resolved."""
 
     NONE = 0
     CAMERA = 1
@@ -71,7 +71,7 @@ class _PathKind(enum.IntEnum):
 
 @dataclass(frozen=True)
 class CameraPaths:
-    """Whose hits are resolved, and to what AOV Output nodes add."""
+    """Buffers of the camera paths whose hits are resolved, and of the AOVs that their nodes write."""
 
     paths: moderngl.Buffer
     """CAMERA_PATH."""
@@ -289,7 +289,7 @@ class Resolve(BufferSet):
         return {**extra, "ray_level": counts.levels}
 
     def _order_by_program(self, buffers: dict[str, Bindable], active: ActivePaths) -> moderngl.Buffer:
-        self._order.require_items(_RANGE_SIZE * len(self._programs) + active.most)
+        self._order.require_items(_RANGE_SIZE * len(self._programs) + active.capacity)
         self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
         buffers = {**buffers, "HitOrder": self._order.buffer, "ActivePaths": active.buffer}
         active.run(self._count, buffers)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A first look at a scene, before its programs are compiled: plain surfaces under a light at the viewer's head."""
+"""Picture of a scene before its programs are compiled: plain surfaces under a light at the viewer's head."""
 
 from collections.abc import Callable
 

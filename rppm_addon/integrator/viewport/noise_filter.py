@@ -42,9 +42,9 @@ StorageBlock("Guides", "vec4 guides[];")
 STEPS = (1, 2, 4, 8, 16)
 """Pixels between the taps of a round."""
 MAX_SAMPLES = 256
-"""Whose picture is filtered."""
+"""Largest number of samples of a picture that is filtered."""
 _WHOLE_SAMPLES = 64
-"""Up to which the filtered picture is shown alone."""
+"""Number of samples up to which the filtered picture is shown alone."""
 _IMAGES = "images of the noise filter"
 
 

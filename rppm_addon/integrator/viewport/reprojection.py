@@ -71,13 +71,13 @@ class SeenPicture(BufferSet):
         super().__init__(context, library, sizes)
         gl, size = context.moderngl, (sizes.width, sizes.height)
         self.size = size
-        self.looks, self.surfaces, self.numbers = (
+        self.plain_picture, self.surfaces, self.numbers = (
             self.own(gl.texture(size, components, dtype=dtype), _SURFACES) for components, dtype in _TEXTURES
         )
-        for texture in (self.looks, self.surfaces, self.numbers):
+        for texture in (self.plain_picture, self.surfaces, self.numbers):
             texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
         depth = self.own(gl.depth_texture(size), _SURFACES)
-        self.framebuffer = self.own(gl.framebuffer([self.looks, self.surfaces, self.numbers], depth))
+        self.framebuffer = self.own(gl.framebuffer([self.plain_picture, self.surfaces, self.numbers], depth))
         self.scene: Scene | None = None
         """Scene that the picture shows; None if there is no picture."""
         self._seen: Scene | None = None
@@ -95,7 +95,12 @@ class SeenPicture(BufferSet):
     @property
     def blocks(self) -> dict[str, Bindable]:
         """BufferSet.blocks, with the textures of the surfaces, for the picture that is composed."""
-        return {**super().blocks, "surfaces": self.surfaces, "numbers": self.numbers, "looks": self.looks}
+        return {
+            **super().blocks,
+            "surfaces": self.surfaces,
+            "numbers": self.numbers,
+            "plain_picture": self.plain_picture,
+        }
 
     @property
     def last_blocks(self) -> dict[str, Bindable]:
@@ -108,7 +113,7 @@ class SeenPicture(BufferSet):
             "LastCounts": self.counts.buffer,
         }
 
-    def look(self, first_look: FirstLook, scene: Scene) -> None:
+    def draw(self, first_look: FirstLook, scene: Scene) -> None:
         """Have the surfaces of a scene's view, of this size. Raises SceneError for a camera that sees nothing."""
         if self._seen is not None and self._seen.camera is scene.camera and same_places(self._seen, scene):
             return
@@ -205,7 +210,7 @@ class Reprojection:
         if last is None:
             return None
         self._moved = self._sized(self._moved, scene)
-        self._moved.look(self._first_look, scene)
+        self._moved.draw(self._first_look, scene)
         self._run(self._moved, last, scene, None, 1.0)
         return self._moved.read()
 
@@ -236,11 +241,11 @@ class Reprojection:
         return None
 
     def _following(self, scene: Scene) -> SeenPicture:
-        """Where the picture of a scene's view comes: beside the last one of another view."""
+        """Begin the picture of a scene's view, beside the last one of another view."""
         if self._next is not None and self._next.scene is not None and self._next.scene.camera is not scene.camera:
             self._last, self._next = self._next, self._last
         self._next = self._sized(self._next, scene)
-        self._next.look(self._first_look, scene)
+        self._next.draw(self._first_look, scene)
         return self._next
 
     def _sized(self, entry: SeenPicture | None, scene: Scene) -> SeenPicture:

@@ -214,7 +214,10 @@ class _Compiler:
         given = self._kind(link.node).outputs.get(link.output)
         if given is None or given is SHADER or wanted is SHADER:
             node = self._graph.nodes[link.node]
-            raise GraphError(f'node "{node.name}" ({node.kind}) gives no value "{link.output}"')
+            values = ", ".join(name for name, kind in self._kind(link.node).outputs.items() if kind is not SHADER)
+            raise GraphError(
+                f'node "{node.name}" ({node.kind}) has no value output "{link.output}", only {values or "shaders"}'
+            )
         value = self._value(scope, link)
         if given is FLOAT:
             return value if wanted is FLOAT else f"vec3({value})"

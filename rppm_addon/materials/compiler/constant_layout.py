@@ -17,7 +17,7 @@ class ConstantLayout:
         self._numbers: list[float] = []
         self._tables: list[np.ndarray] = []
         self._pending: list[tuple[int, int]] = []
-        """Where the start of which table goes."""
+        """Places of the starts of tables."""
         self._used: dict[int, int] = {}
         self.attributes: dict[str, int] = {}
 

@@ -31,7 +31,7 @@ class NodeKind:
     The function takes, in this order: ``Surface surface`` if ``surface`` says so; of shader nodes ``inout
     ClosureBuilder builder, float weight``; an int for each option, the place of its value in the option's tuple
     (always a literal, so that the compiler folds it); a uint for each resource; of nodes that trace rays a uint for the
-    first place of what they find and one for its level; the inputs; ``out`` the outputs.
+    index of their first NODE_RAY and one for its level; the inputs; ``out`` the outputs.
 
     Inputs and outputs are named as the identifiers of Blender's sockets, in lower case with underscores for blanks;
     options as the properties of its nodes, with Blender's own values.
@@ -48,19 +48,19 @@ class NodeKind:
     its image; "attribute", the number of its mesh attribute."""
     surface: bool = False
     ray_places: int = 0
-    """Number of NODE_RAY that hold what the node asks of rays and what these find. The rays are traced before the
-    node's value is known (shaders/materials/node_rays.glsl). An input "samples" says how many rays; without it, it is
+    """Number of NODE_RAY records for the node's queries and their results. The rays are traced before the node's value
+    is computed (shaders/materials/node_rays.glsl). An input "samples" says how many rays; without it, it is
     one."""
     fallbacks: dict[str, str] = field(default_factory=dict)
     """Replacement that is rendered in place of the node, by the value that an option has, or "" for any: users are
     warned."""
     function_option: str = ""
-    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``, which is not
-    passed: drivers take long to fold a choice among many at every call."""
+    """An option with a GLSL function for each of its values, ``node_<name>_<value in lower case>``. The option is no
+    argument then: drivers take long to fold a choice among many at every call."""
 
     @property
     def traces_rays(self) -> bool:
-        """Whether it asks for rays."""
+        """Whether the node requests rays."""
         return self.ray_places > 0
 
     def call(self, name: str, options: dict[str, Any]) -> tuple[str, list[str]]:
@@ -86,5 +86,5 @@ class NodeKind:
 
     @property
     def is_shader(self) -> bool:
-        """Whether it gives a closure."""
+        """Whether the node adds to the closure."""
         return SHADER in self.outputs.values()

@@ -22,7 +22,7 @@ _GLOSSY = {"bsdf_glossy", "bsdf_metallic"}
 _REFRACTIVE = {"bsdf_glass", "bsdf_refraction"}
 _LIGHTS = {"emission", "background"}
 _UV_KINDS = {"tex_coord", "uvmap"}
-"""Whose output "uv" is taken for that of the UV map in use."""
+"""Kinds of nodes whose output "uv" is that of the UV map in use."""
 _UNMAPPED = {"scale": 1.0, "location": 0.0, "rotation": 0.0}
 
 

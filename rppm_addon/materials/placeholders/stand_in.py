@@ -18,7 +18,7 @@ _DARKEST = 1e-3
 
 
 def stand_in_graph(graph: NodeGraph, images: Sequence[Image]) -> NodeGraph:
-    """A graph that looks much like another one, of the structure that all stand-ins share. None is too broken."""
+    """A graph that approximates another one and has the structure of all stand-ins. No graph is too broken for it."""
     plain = plain_surface(graph, images)
     texture = plain.texture
     scale, offset, tint = np.ones(3), np.zeros(3), plain.color

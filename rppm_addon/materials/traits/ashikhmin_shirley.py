@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs reflect by the model of Ashikhmin and Shirley."""
+"""Node graphs that reflect by the model of Ashikhmin and Shirley."""
 
 from ...scene.node_graphs import NodeGraph
 from ..nodes.shaders import ASHIKHMIN_SHIRLEY

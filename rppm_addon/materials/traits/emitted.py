@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs emit light."""
+"""Emission of node graphs."""
 
 import enum
 from dataclasses import dataclass

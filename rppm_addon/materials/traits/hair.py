@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs scatter as fibers do."""
+"""Node graphs that scatter as fibers do."""
 
 from ...scene.node_graphs import NodeGraph
 from .. import hair_energy as hair_energy

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs ask for rays."""
+"""Node graphs that request rays."""
 
 from ...scene.node_graphs import NodeGraph
 from ..nodes import KINDS

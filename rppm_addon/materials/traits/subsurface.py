@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs send light below the surface."""
+"""Node graphs with subsurface scattering."""
 
 from ...gl.buffers.constants import Constants
 from ...scene.node_graphs import NodeGraph, ShaderNode

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs let light pass straight on, and whether shadow rays or photons bring it."""
+"""Transparency of node graphs, and whether shadow rays or photons bring the light behind."""
 
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from .emitted import is_positive, reachable

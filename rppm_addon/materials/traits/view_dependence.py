@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which node graphs scatter by fractions that depend on where they are seen from."""
+"""Node graphs whose lobe weights depend on the direction of view."""
 
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from .emitted import is_positive, reachable

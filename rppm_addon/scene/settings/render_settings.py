@@ -24,7 +24,7 @@ class RenderSettings(
     """Settings of the photon mapper: one record of all subjects, which begins with the fields of its last base."""
 
     @property
-    def found_passes(self) -> tuple[RenderPass, ...]:
-        """Passes that are found: those asked for, those that they are divided by, and those that denoising needs."""
+    def rendered_passes(self) -> tuple[RenderPass, ...]:
+        """Passes that are rendered: the requested ones, their divisors, and those that denoising needs."""
         names = dict.fromkeys((*with_divisors(self.passes), *self.denoising_features))
         return passes_named(tuple(names)) + self.passes_named_by_users

@@ -87,7 +87,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
     """Write a checkpoint; a reader never sees half of it. Raises PictureError when it cannot be written."""
     import OpenEXR  # late: the file format is not needed to import the engine
 
-    state, found_passes = pause.state, settings_of_plain(render.settings).found_passes
+    state, rendered_passes = pause.state, settings_of_plain(render.settings).rendered_passes
     summary = CheckpointSummary(
         render,
         state.skipped,
@@ -113,7 +113,7 @@ def write_checkpoint(path: str | Path, render: StillRender, pause: Pause, second
         "dataWindow": ((0, 0), (len(state.tallies) - 1, 0)),
     }
     parts = [
-        OpenEXR.Part(film, _film_channels(state, pause.inspections, found_passes), _FILM),
+        OpenEXR.Part(film, _film_channels(state, pause.inspections, rendered_passes), _FILM),
         OpenEXR.Part(guide, _guide_channels(state), _GUIDE),
     ]
     if state.rest is not None:
@@ -148,7 +148,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
         def pairs(*names: str) -> np.ndarray:
             return np.stack([guide[name].reshape(-1) for name in names], axis=-1)
 
-        passes = settings_of_plain(summary.render.settings).found_passes
+        passes = settings_of_plain(summary.render.settings).rendered_passes
         state = RenderState(
             summary.sample_offset,
             summary.iteration,
@@ -157,7 +157,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             summary.wide_radius,
             summary.global_photons_found,
             layer(*"RGBA"),
-            {entry.name: layer(*entry.layers) for entry in passes if entry.comes_of_iterations},
+            {entry.name: layer(*entry.layers) for entry in passes if entry.is_accumulated},
             layer(*_COUNTS) if _COUNTS[0] in film else np.zeros((0, 0, 2), np.uint32),
             layer("Radius Factor.V"),
             pairs("left", "contributed"),
@@ -166,7 +166,7 @@ def read_checkpoint(path: str | Path) -> tuple[CheckpointSummary, Pause]:
             layer(*_HALF) if _HALF[0] in film else None,
         )
         _check_state(state, summary.render.placement)
-        inspections = {entry.name: layer(*entry.layers) for entry in passes if not entry.comes_of_iterations}
+        inspections = {entry.name: layer(*entry.layers) for entry in passes if not entry.is_accumulated}
         return summary, Pause(state, summary.device, summary.radius_meters, inspections)
 
 

@@ -20,5 +20,5 @@ def read_frame(film: Film, exposure: float, inspections: Mapping[str, np.ndarray
 
     inspections: passes that are computed once and that the film does not keep, by name.
     """
-    passes = frame_passes(film.read_passes(), film.found_passes, exposure)
+    passes = frame_passes(film.read_passes(), film.rendered_passes, exposure)
     return Frame(read_combined(film, exposure), {**passes, **(inspections or {})})

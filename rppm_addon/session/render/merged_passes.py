@@ -14,7 +14,7 @@ class MergedPasses:
 
     def __init__(self, entries: Sequence[RenderPass]) -> None:
         """entries: the passes that the film finds."""
-        self._entries = [entry for entry in entries if entry.comes_of_iterations]
+        self._entries = [entry for entry in entries if entry.is_accumulated]
         self._sums: dict[str, np.ndarray] = {}
         self._coverage: dict[str, MergedCoverage] = {}
         self._counts = np.zeros((0, 0, 2), np.int64)
@@ -36,7 +36,7 @@ class MergedPasses:
             )
             if entry.accumulation is Accumulation.MEAN:
                 self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * found_here
-            elif entry.accumulation is Accumulation.FOUND_MEAN:
+            elif entry.accumulation is Accumulation.SURFACE_MEAN:
                 weight = counts[..., 1].reshape(found_here.shape)
                 self._sums[entry.name] = self._sums.get(entry.name, 0.0) + values.astype(np.float64) * weight
             elif entry.accumulation is Accumulation.SUM:
@@ -54,8 +54,8 @@ class MergedPasses:
             if entry.name not in self._sums:
                 continue
             values = self._sums[entry.name]
-            if entry.accumulation in {Accumulation.MEAN, Accumulation.FOUND_MEAN}:
-                counts = np.maximum(self._counts[..., int(entry.accumulation is Accumulation.FOUND_MEAN)], 1)
+            if entry.accumulation in {Accumulation.MEAN, Accumulation.SURFACE_MEAN}:
+                counts = np.maximum(self._counts[..., int(entry.accumulation is Accumulation.SURFACE_MEAN)], 1)
                 values = values / counts.reshape(*counts.shape, *[1] * (values.ndim - 2))
             elif entry.accumulation is Accumulation.SUM:
                 values = values / max(self._iterations, 1)

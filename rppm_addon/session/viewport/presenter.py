@@ -27,7 +27,7 @@ def film_picture(film: Film, scene: Scene) -> np.ndarray:
     """
     if len(scene.settings.passes) != 1:
         return read_combined(film, scene.exposure)
-    values = frame_passes(film.read_passes(), film.found_passes, scene.exposure)[scene.settings.passes[0]]
+    values = frame_passes(film.read_passes(), film.rendered_passes, scene.exposure)[scene.settings.passes[0]]
     planes = np.atleast_3d(values)
     picture = np.zeros((*planes.shape[:2], 4), np.float32)
     picture[..., : planes.shape[2]] = planes

@@ -120,11 +120,11 @@ void main() {
     Disk disk = disk_of(index);
     RandomSequence random = random_of(index);
     uint count = 0u;
-    bool found = false;
-    while (!found && count < MAX_PROBES) {
+    bool accepted = false;
+    while (!accepted && count < MAX_PROBES) {
         ++count;
         float part = covered(disk, point_on(disk, random));
-        found = part >= 1.0 || next_random(random) < part;
+        accepted = part >= 1.0 || next_random(random) < part;
     }
     importons[index].gathers |= count << PHOTON_FACTOR_SHIFT;
 }

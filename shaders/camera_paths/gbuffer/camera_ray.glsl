@@ -6,12 +6,12 @@
 #include "common/constants.glsl"
 #include "camera_paths/gbuffer/sheared.glsl"
 
-// `passed` is the way from the camera to the origin, at the clip start; `area` is what a pixel sees at
-// distance 1 across the ray, m^2, or everywhere where rays are parallel. `reach` 0: the pixel sees nothing.
+// `start_distance` is the distance from the camera to the origin, at the clip start; `area` is the area of a pixel at
+// distance 1 across the ray, m^2, or at any distance where rays are parallel. `reach` 0: the pixel shows nothing.
 struct CameraRay {
     vec3 origin;
     vec3 direction;
-    float passed;
+    float start_distance;
     float reach;
     float area;
 };
@@ -31,9 +31,9 @@ CameraRay plane_ray(vec2 at, vec2 lens) {
     CameraRay ray;
     ray.direction = pinhole ? normalize(axis) : normalize(camera.focus_distance * axis - vec3(lens, 0.0));
     float stretch = orthographic ? 1.0 / ray.direction.z : length(axis);
-    ray.passed = camera.clip_start * stretch;
+    ray.start_distance = camera.clip_start * stretch;
     ray.reach = (camera.clip_end - camera.clip_start) * (orthographic ? 1.0 : stretch);
-    ray.origin = vec3(lens + (orthographic ? at : vec2(0.0)), 0.0) + ray.passed * ray.direction;
+    ray.origin = vec3(lens + (orthographic ? at : vec2(0.0)), 0.0) + ray.start_distance * ray.direction;
     float cosine = ray.direction.z;
     ray.area = camera.pixel_area * (orthographic ? cosine : cosine * cosine * cosine);
     return ray;
@@ -43,8 +43,8 @@ CameraRay plane_ray(vec2 at, vec2 lens) {
 Ray sheared_ray(CameraRay ray) {
     mat3 axes = mat3(camera.right, camera.up, camera.forward);
     vec3 direction = normalize(axes * ray.direction);
-    vec3 start = axes * (ray.origin - ray.passed * ray.direction);
-    return Ray(camera.position + start + ray.passed * direction, NO_TRIANGLE, direction, ray.reach);
+    vec3 start = axes * (ray.origin - ray.start_distance * ray.direction);
+    return Ray(camera.position + start + ray.start_distance * direction, NO_TRIANGLE, direction, ray.reach);
 }
 
 Ray world_ray(CameraRay ray) {

@@ -37,12 +37,12 @@ Hit seen_hit(Ray ray, uint triangle) {
 void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
-    CameraRay seen = plane_ray(window_point(index), vec2(0.0));
-    Ray ray = world_ray(seen);
+    CameraRay camera_ray = plane_ray(window_point(index), vec2(0.0));
+    Ray ray = world_ray(camera_ray);
     vec2 visible = texelFetch(visibility, ivec2(index % camera.width, index / camera.width), 0).xy;
     uint number = uint(visible.x + 0.5) | (uint(visible.y + 0.5) << 16u);
     rays[index] = ray;
     hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : seen_hit(ray, number - 1u);
-    camera_paths[index] =
-        CameraPath(vec3(1.0), 0.0, seen.passed, 0.0, sqrt(seen.area / PI), PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0);
+    camera_paths[index] = CameraPath(vec3(1.0), 0.0, camera_ray.start_distance, 0.0, sqrt(camera_ray.area / PI),
+                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0);
 }

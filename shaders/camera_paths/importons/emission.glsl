@@ -18,8 +18,8 @@ void handle_media(inout PathSegment segment) {
     segment.path.throughput *= segment_transmittance(segment.path.flags, segment.distance);
 }
 
-// Radiance of the light objects that the ray passes, at its origin.
-vec3 passed_emission(PathSegment segment) {
+// Radiance of the light objects that the ray intersects, at its origin.
+vec3 light_object_emission(PathSegment segment) {
     CameraPath path = segment.path;
     if (!path_collects_emission(path) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
     return visible_light(segment.from, segment.ray, segment.distance, camera_ray_kind(path.flags),
@@ -50,8 +50,8 @@ vec4 surface_emission(CameraPath path, ScatterPoint from, Closure closure) {
     return radiance;
 }
 
-// lights: radiance of the light objects that the ray has passed.
+// lights: radiance of the light objects that the ray intersects.
 void handle_emission(PathSegment segment, SurfaceVertex vertex, vec3 lights) {
-    vec4 passed = vec4(segment.origin_throughput * lights, 0.0);
-    add_radiance(segment, passed + surface_emission(vertex.path, segment.from, vertex.closure));
+    vec4 light_objects = vec4(segment.origin_throughput * lights, 0.0);
+    add_radiance(segment, light_objects + surface_emission(vertex.path, segment.from, vertex.closure));
 }

@@ -63,7 +63,7 @@ void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampli
     final_gather_hits[index].radiance += path.throughput * environment * (1.0 - photon_weight);
 }
 
-// lights: radiance of the light objects that the ray has passed.
+// lights: radiance of the light objects that the ray intersects.
 void handle_escaped(PathSegment segment, vec3 lights) {
     vec3 direction = segment.ray.direction, environment = environment_radiance(segment.path, direction);
     EnvironmentSampling sampling = environment_sampling(segment.from.lit.position, direction);

@@ -9,7 +9,7 @@
 #include "camera_paths/importons/radius.glsl"
 #include "camera_paths/importons/scatter_point.glsl"
 
-// The ray of a camera path, from the vertex that scattered it to what it met.
+// The ray of a camera path, from the vertex that scattered it to its hit.
 struct PathSegment {
     uint index;       // of the path in its band
     CameraPath path;  // as it arrives at the end of the ray

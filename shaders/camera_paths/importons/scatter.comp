@@ -45,7 +45,7 @@ void main() {
     if (!(ray.maximum_distance > 0.0)) return;
     PathSegment segment = path_segment(index, ray);
     handle_media(segment);
-    vec3 lights = passed_emission(segment);
+    vec3 lights = light_object_emission(segment);
     if (segment.escapes) {
         handle_escaped(segment, lights);
         return;

@@ -26,12 +26,12 @@ void main() {
         random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS, parameters.segment, index);
     vec3 beside = diffuse_beside(closure, part);
     float below = largest(part.weight), probability = below / (below + largest(beside));
-    vec3 share = 1.0 / max(closure.diffuse, vec3(1e-20));
+    vec3 weight = 1.0 / max(closure.diffuse, vec3(1e-20));
     bool walks = next_random(random) < probability;
-    share *= walks ? part.weight / probability : beside / (1.0 - probability);
-    photon_paths[index].flux = flux * share;
+    weight *= walks ? part.weight / probability : beside / (1.0 - probability);
+    photon_paths[index].flux = flux * weight;
     if (!walks) return;
     // Camera paths come out evenly: photons go in so.
     vec3 direction = -sample_cosine_hemisphere(unpack_unit_vector(closure.geometric_normal), next_random2(random));
-    begin_walk(index, closure, part, direction, share * flux / largest(share * flux));
+    begin_walk(index, closure, part, direction, weight * flux / largest(weight * flux));
 }

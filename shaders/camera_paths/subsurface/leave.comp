@@ -12,14 +12,14 @@ writeonly buffer ExitClosures;
 void main() {
     uint index = active_path();
     if (index == NO_PATH || exit_hits[index].triangle == NO_TRIANGLE) return;
-    Exit found = exit_of(index);
-    uint shading = pack_unit_vector(found.shading);
-    exit_closures[index].position = found.position;
+    WalkExit exit_point = read_exit(index);
+    uint shading = pack_unit_vector(exit_point.shading);
+    exit_closures[index].position = exit_point.position;
     exit_closures[index].triangle = exit_hits[index].triangle;
     exit_closures[index].diffuse = subsurface_walks[index].throughput;
-    exit_closures[index].geometric_normal = pack_unit_vector(found.geometric);
+    exit_closures[index].geometric_normal = pack_unit_vector(exit_point.geometric);
     exit_closures[index].shading_normal = shading;
     exit_closures[index].diffuse_normal = shading;
     exit_closures[index].diffuse_roughness = 0u;
-    exit_closures[index].ray_offset = found.ray_offset;
+    exit_closures[index].ray_offset = exit_point.ray_offset;
 }

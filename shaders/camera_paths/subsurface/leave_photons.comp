@@ -24,18 +24,18 @@ void main() {
     if (index == NO_PATH) return;
     vec3 flux = largest(photon_paths[index].flux) * subsurface_walks[index].throughput;
     Hit hit = exit_hits[index];
-    Exit found;
+    WalkExit exit_point;
     vec3 direction;
     if (hit.triangle == NO_TRIANGLE) flux = vec3(0.0);
     else {
-        found = exit_of(index);
+        exit_point = read_exit(index);
         RandomSequence random =
             random_sequence(iteration.seed, iteration.number, STAGE_SUBSURFACE_PHOTONS, parameters.segment, index);
         random.key.w += 0xf00u;
         Subsurface part = unpacked_subsurface(closures[index].lobes[CLOSURE_LOBES - 1]);
         vec3 u = vec3(next_random2(random), next_random(random));
         float weight;
-        direction = left_by(part, found.shading, found.geometric, walk_rays[index].direction, u, weight);
+        direction = left_by(part, exit_point.shading, exit_point.geometric, walk_rays[index].direction, u, weight);
         flux *= weight;
     }
     if (!(largest(flux) > 0.0)) {
@@ -46,6 +46,6 @@ void main() {
     photon_paths[index].flux = flux;
     hits[index] = hit;
     // Turned, to look at the surface from where the photon goes (photons/adjoint.comp).
-    vec3 origin = found.position + found.ray_offset * found.geometric;
+    vec3 origin = exit_point.position + exit_point.ray_offset * exit_point.geometric;
     rays[index] = Ray(origin, hit.triangle, -direction, INFINITY_DISTANCE);
 }

@@ -109,8 +109,8 @@ float turn(SubsurfaceWalk walk, Medium medium, Guide guide, inout Ray ray, inout
 
 // Of a distance, or of more than that.
 vec3 distance_pdf(vec3 extinction, float distance, bool leaves) {
-    vec3 passed = exp(-extinction * distance);
-    return leaves ? passed : extinction * passed;
+    vec3 transmittance = exp(-extinction * distance);
+    return leaves ? transmittance : extinction * transmittance;
 }
 
 // Walks to the next scattering, or out. False where it ends without coming out.
@@ -137,13 +137,13 @@ bool step_on(uint step, inout SubsurfaceWalk walk, inout Ray ray, inout RandomSe
     }
     if (leaves) distance = hit.distance;
     else hit.triangle = NO_TRIANGLE;
-    vec3 pdf = distance_pdf(medium.extinction, distance, leaves), passed = exp(-medium.extinction * distance);
+    vec3 pdf = distance_pdf(medium.extinction, distance, leaves), transmittance = exp(-medium.extinction * distance);
     if (step > 0u) {
         vec3 to_surface = guided.to_surface * distance_pdf(guided.stretch * medium.extinction, distance, leaves),
              away = guided.away * distance_pdf(guided.stretch_away * medium.extinction, distance, leaves);
         pdf = mix(pdf, mix(to_surface, away, guided.away_probability), medium.guided);
     }
-    walk.throughput *= (leaves ? passed : medium.scattering * passed) / dot(channels, pdf);
+    walk.throughput *= (leaves ? transmittance : medium.scattering * transmittance) / dot(channels, pdf);
     ray.origin += distance * ray.direction;
     ray.source_triangle = NO_TRIANGLE;
     if (!is_finite(walk.throughput)) {

@@ -81,13 +81,13 @@ Chiang chiang(MicrofacetLobe lobe, vec3 n, vec3 wo) {
     float h_t = clamp(h * cosine_o / (lobe.ior * cosine_t), -1.0, 1.0);
     hair.gamma_o = asin(h);
     hair.gamma_t = asin(h_t);
-    vec3 passed = exp(-lobe.f0 * (2.0 * sqrt(1.0 - h_t * h_t) / cosine_t));
+    vec3 transmitted = exp(-lobe.f0 * (2.0 * sqrt(1.0 - h_t * h_t) / cosine_t));
     float reflected = fresnel_dielectric(cosine_o * sqrt(1.0 - h * h), lobe.ior);
-    vec3 part = (1.0 - reflected) * (1.0 - reflected) * passed;
+    vec3 part = (1.0 - reflected) * (1.0 - reflected) * transmitted;
     hair.attenuations[0] = vec3(reflected);
     hair.attenuations[1] = part;
-    hair.attenuations[2] = part * passed * reflected;
-    hair.attenuations[3] = hair.attenuations[2] * passed * reflected / max(1.0 - passed * reflected, 1e-6);
+    hair.attenuations[2] = part * transmitted * reflected;
+    hair.attenuations[3] = hair.attenuations[2] * transmitted * reflected / max(1.0 - transmitted * reflected, 1e-6);
     for (int p = 0; p < 4; ++p) hair.probabilities[p] = luminance(hair.attenuations[p]);
     hair.probabilities /=
         max(hair.probabilities.x + hair.probabilities.y + hair.probabilities.z + hair.probabilities.w, 1e-20);
@@ -178,7 +178,7 @@ vec3 sample_chiang(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float uc) {
 // Of a fiber that is looked at across.
 vec3 chiang_albedo(MicrofacetLobe lobe, float cosine) {
     float sine2 = (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
-    vec3 passed = exp(-lobe.f0 * (2.0 * sqrt(max(1.0 - sine2, 0.0))));
+    vec3 transmitted = exp(-lobe.f0 * (2.0 * sqrt(max(1.0 - sine2, 0.0))));
     float reflected = fresnel_dielectric(cosine, lobe.ior);
-    return reflected + (1.0 - reflected) * (1.0 - reflected) * passed / max(1.0 - passed * reflected, 1e-6);
+    return reflected + (1.0 - reflected) * (1.0 - reflected) * transmitted / max(1.0 - transmitted * reflected, 1e-6);
 }

@@ -97,7 +97,7 @@ float other_masking(float roughness, float cosine_i, float cosine_o) {
     return (1.0 + first) / (1.0 + first + facet_shadow(roughness, cosine_o));
 }
 
-bool facet_seen(vec3 v, vec3 m, vec3 h) { return dot(v, h) > 0.0 && dot(v, m) > 0.0; }
+bool facet_visible(vec3 v, vec3 m, vec3 h) { return dot(v, h) > 0.0 && dot(v, m) > 0.0; }
 
 // What is summed by chance is drawn anew where whoever evaluates sets this, and for each pair of directions.
 uint fiber_seed = 0u;
@@ -169,7 +169,7 @@ float reflected_by_scales(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, vec2 
     for (int i = 0; i <= last_step(steps); ++i) {
         float weight, gamma = fiber_step(steps, i, weight);
         vec3 m = scale_normal(hair.tilt, gamma, hair.aspect), plain = vec3(m.x, 0.0, m.z);
-        if (!facet_seen(v, plain, h) || !facet_seen(l, plain, h)) continue;
+        if (!facet_visible(v, plain, h) || !facet_visible(l, plain, h)) continue;
         float cosine = dot(m, v);
         sum += weight * facet_density(hair.roughness, dot(m, h)) * both_masking(hair.roughness, cosine, dot(m, l))
                * arc_length(hair.aspect, gamma) * huang_scale(hair.entering, cosine);
@@ -232,15 +232,15 @@ void add_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, float gamma, fl
                 inout vec3 sum, inout vec3 rest) {
     vec3 m = scale_normal(hair.tilt, gamma, hair.aspect), plain = scale_normal(0.0, gamma, hair.aspect);
     vec3 h = sample_scale_facet(hair.roughness, v, m, state);
-    float cosine_h = dot(v, h), seen = dot(v, m), least = 1.0 / lobe.ior - 1e-5;
+    float cosine_h = dot(v, h), cosine_m = dot(v, m), least = 1.0 / lobe.ior - 1e-5;
     Within path = behind_facet(hair, refract(-v, h, 1.0 / lobe.ior), gamma);
     float leaves = dot(-path.direction, m);
-    if (!(cosine_h > 0.0) || !facet_seen(v, m, h) || !facet_seen(-path.direction, m, h) || !facet_seen(v, plain, h)
-        || !facet_seen(-path.direction, plain, h))
+    if (!(cosine_h > 0.0) || !facet_visible(v, m, h) || !facet_visible(-path.direction, m, h)
+        || !facet_visible(v, plain, h) || !facet_visible(-path.direction, plain, h))
         return;
-    float passed = 1.0 - fresnel_dielectric(cosine_h, lobe.ior);
-    float carried =
-        passed * huang_scale(hair.entering, seen) * other_masking(hair.roughness, seen, leaves) * seen / leaves;
+    float transmitted = 1.0 - fresnel_dielectric(cosine_h, lobe.ior);
+    float carried = transmitted * huang_scale(hair.entering, cosine_m) * other_masking(hair.roughness, cosine_m, leaves)
+                    * cosine_m / leaves;
     vec3 absorbed = fiber_absorption(lobe, hair, path.direction, gamma, path.gamma + PI);
     if (dot(l, path.direction) >= least)
         sum += weight * lobe.weight.y * carried * absorbed * leave_fiber(lobe, hair, path, l);
@@ -250,13 +250,13 @@ void add_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 l, float gamma, fl
     if (!(cosine_2 > 0.0)) return;
     float reflected = fresnel_dielectric(cosine_2, 1.0 / lobe.ior);
     Within next = behind_reflection(hair, h2, gamma, path);
-    vec3 residual = weight * residual_of(passed, reflected, absorbed);
+    vec3 residual = weight * residual_of(transmitted, reflected, absorbed);
     if (dot(l, next.direction) < least) {
         rest += residual;
         return;
     }
-    if (!facet_seen(-path.direction, path.normal, h2) || !facet_seen(next.direction, path.normal, h2)
-        || !facet_seen(-path.direction, path.plain, h2) || !facet_seen(next.direction, path.plain, h2))
+    if (!facet_visible(-path.direction, path.normal, h2) || !facet_visible(next.direction, path.normal, h2)
+        || !facet_visible(-path.direction, path.plain, h2) || !facet_visible(next.direction, path.plain, h2))
         return;
     rest += residual;
     if (!(next.cosine > 0.0) || dot(-l, next.normal) <= 0.0 || dot(-l, next.plain) <= 0.0
@@ -310,7 +310,7 @@ vec3 residual_direction(Huang hair, vec3 v, inout uint state) {
 }
 
 // TRT and the rest, of what TR has carried but for its last absorption and reflectance.
-void add_reflected_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 carried, vec3 absorbed, float passed,
+void add_reflected_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 carried, vec3 absorbed, float transmitted,
                           Within path, Within next, inout uint state, inout FiberWays ways) {
     vec3 h = sample_scale_facet(hair.roughness, -next.direction, next.normal, state);
     float reflected = fresnel_dielectric(dot(-next.direction, h), 1.0 / lobe.ior);
@@ -318,13 +318,13 @@ void add_reflected_within(MicrofacetLobe lobe, Huang hair, vec3 v, vec3 carried,
     vec3 absorbed_again = fiber_absorption(lobe, hair, next.direction, next.gamma, path.gamma);
     carried *= absorbed_again * huang_scale(hair.leaving, next.cosine)
                * other_masking(hair.roughness, path.cosine, dot(path.normal, next.direction));
-    bool seen = facet_seen(-next.direction, next.plain, h) && facet_seen(-out_direction, next.plain, h);
-    if (reflected < 1.0 && seen)
+    bool is_visible = facet_visible(-next.direction, next.plain, h) && facet_visible(-out_direction, next.plain, h);
+    if (reflected < 1.0 && is_visible)
         ways.carried[2] = lobe.weight.z * (1.0 - reflected) * carried
                           * other_masking(hair.roughness, next.cosine, dot(next.normal, -out_direction));
     ways.directions[2] = out_direction;
     vec3 mean = sqrt(absorbed * absorbed_again);
-    float leaving = max(0.5 * (passed + 1.0 - reflected), 1e-5);
+    float leaving = max(0.5 * (transmitted + 1.0 - reflected), 1e-5);
     ways.carried[3] = largest(lobe.weight) * carried * reflected * mean * leaving / (1.0 - mean * (1.0 - leaving))
                       * other_masking(hair.roughness, next.cosine, dot(next.normal, reflect(next.direction, h)));
     ways.directions[3] = residual_direction(hair, v, state);
@@ -334,30 +334,31 @@ FiberWays fiber_ways(MicrofacetLobe lobe, Huang hair, vec3 v, float gamma, inout
     vec3 nothing = vec3(0.0), m = scale_normal(hair.tilt, gamma, hair.aspect),
          plain = scale_normal(0.0, gamma, hair.aspect);
     FiberWays ways = FiberWays(vec3[4](v, v, v, v), vec3[4](nothing, nothing, nothing, nothing));
-    float seen = dot(m, v);
+    float cosine_m = dot(m, v);
     vec3 h = sample_scale_facet(hair.roughness, v, m, state);
-    if (seen < 0.0 || dot(plain, v) < 0.0 || !facet_seen(v, plain, h)) return ways;
-    float reflected = fresnel_dielectric(dot(v, h), lobe.ior), scale = huang_scale(hair.entering, seen);
+    if (cosine_m < 0.0 || dot(plain, v) < 0.0 || !facet_visible(v, plain, h)) return ways;
+    float reflected = fresnel_dielectric(dot(v, h), lobe.ior), scale = huang_scale(hair.entering, cosine_m);
     ways.directions[0] = reflect(-v, h);
-    if (facet_seen(ways.directions[0], plain, h))
-        ways.carried[0] =
-            vec3(lobe.weight.x * reflected * scale * other_masking(hair.roughness, seen, dot(m, ways.directions[0])));
+    if (facet_visible(ways.directions[0], plain, h))
+        ways.carried[0] = vec3(lobe.weight.x * reflected * scale
+                               * other_masking(hair.roughness, cosine_m, dot(m, ways.directions[0])));
     Within path = behind_facet(hair, refract(-v, h, 1.0 / lobe.ior), gamma);
     vec3 h2 = sample_scale_facet(hair.roughness, -path.direction, path.normal, state);
-    if (!(path.cosine > 0.0) || !facet_seen(-path.direction, plain, h) || !facet_seen(-path.direction, path.plain, h2))
+    if (!(path.cosine > 0.0) || !facet_visible(-path.direction, plain, h)
+        || !facet_visible(-path.direction, path.plain, h2))
         return ways;
     vec3 absorbed = fiber_absorption(lobe, hair, path.direction, gamma, path.gamma + PI);
-    float reflected_2 = fresnel_dielectric(dot(-path.direction, h2), 1.0 / lobe.ior), passed = 1.0 - reflected_2;
-    vec3 carried = (1.0 - reflected) * scale * other_masking(hair.roughness, seen, dot(m, -path.direction)) * absorbed
-                   * huang_scale(hair.leaving, path.cosine);
+    float reflected_2 = fresnel_dielectric(dot(-path.direction, h2), 1.0 / lobe.ior), transmitted = 1.0 - reflected_2;
+    vec3 carried = (1.0 - reflected) * scale * other_masking(hair.roughness, cosine_m, dot(m, -path.direction))
+                   * absorbed * huang_scale(hair.leaving, path.cosine);
     vec3 out_direction = refract(path.direction, h2, lobe.ior);
     ways.directions[1] = out_direction;
-    if (passed > 0.0 && dot(path.normal, -out_direction) > 0.0 && facet_seen(-out_direction, path.plain, h2))
-        ways.carried[1] = lobe.weight.y * passed * carried
+    if (transmitted > 0.0 && dot(path.normal, -out_direction) > 0.0 && facet_visible(-out_direction, path.plain, h2))
+        ways.carried[1] = lobe.weight.y * transmitted * carried
                           * other_masking(hair.roughness, path.cosine, dot(path.normal, -out_direction));
     Within next = behind_reflection(hair, h2, gamma, path);
     if (next.cosine > 0.0)
-        add_reflected_within(lobe, hair, v, carried * reflected_2, absorbed, passed, path, next, state, ways);
+        add_reflected_within(lobe, hair, v, carried * reflected_2, absorbed, transmitted, path, next, state, ways);
     return ways;
 }
 
@@ -382,10 +383,10 @@ vec3 sample_huang(MicrofacetLobe lobe, vec3 n, vec3 wo, vec2 u, float uc, out ve
 
 vec3 huang_albedo(MicrofacetLobe lobe, float cosine) {
     float sine2 = (1.0 - cosine * cosine) / (lobe.ior * lobe.ior);
-    vec3 passed = exp(-lobe.f0 * (2.0 * sqrt(max(1.0 - sine2, 0.0))));
+    vec3 transmitted = exp(-lobe.f0 * (2.0 * sqrt(max(1.0 - sine2, 0.0))));
     float reflected = fresnel_dielectric(cosine, lobe.ior);
-    vec3 part = (1.0 - reflected) * (1.0 - reflected) * passed;
-    return lobe.weight.x * reflected + lobe.weight.y * part + lobe.weight.z * part * passed * reflected
-           + largest(lobe.weight) * part * passed * passed * reflected * reflected
-                 / max(1.0 - passed * reflected, 1e-6);
+    vec3 part = (1.0 - reflected) * (1.0 - reflected) * transmitted;
+    return lobe.weight.x * reflected + lobe.weight.y * part + lobe.weight.z * part * transmitted * reflected
+           + largest(lobe.weight) * part * transmitted * transmitted * reflected * reflected
+                 / max(1.0 - transmitted * reflected, 1e-6);
 }

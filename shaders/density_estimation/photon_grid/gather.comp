@@ -74,7 +74,7 @@ void main() {
     Cells cells = cells_around(importon.position, radius, side_of(caustic_grid));
     Cells wide_cells = cells_around(importon.position, wide, parameters.wide_side);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
-    uint next = 0u, end = 0u, passed = visit.y, looked_at = visit.y, rounds = parameters.max_rounds;
+    uint next = 0u, end = 0u, skip_count = visit.y, tested_count = visit.y, rounds = parameters.max_rounds;
     bool any = false;
     while (true) {
         // On to the next photon within reach first: the threads of a group then evaluate theirs together.
@@ -84,7 +84,7 @@ void main() {
             --rounds;
             if (next < end) {
                 uvec4 candidate = sorted_photons[next++];
-                ++looked_at;
+                ++tested_count;
                 vec3 offset = uintBitsToFloat(candidate.xyz) - importon.position;
                 near = dot(offset, offset) < radius * radius;
                 number = candidate.w;
@@ -97,8 +97,8 @@ void main() {
                 ivec3 cell = cells.low + ivec3(corner & 1u, (corner >> 1u) & 1u, (corner >> 2u) & 1u);
                 if ((corner++ & 7u & ~cells.steps) == 0u) {
                     uvec2 range = buckets[bucket_in(grid, cell)];
-                    uint skipped = min(passed, range.y - range.x);
-                    passed -= skipped;
+                    uint skipped = min(skip_count, range.y - range.x);
+                    skip_count -= skipped;
                     next = range.x + skipped;
                     end = range.y;
                 }
@@ -116,5 +116,5 @@ void main() {
         if (parameters.light_sums != 0u) add_light(visit.x, importon, number, photons[number].flags, estimate);
     }
     if (any) write_collected(visit.x, (importon.gathers & FINAL_GATHER_HIT) != 0u, collected);
-    if (next < end || corner < corners) leave(uvec2(visit.x, looked_at));
+    if (next < end || corner < corners) leave(uvec2(visit.x, tested_count));
 }

@@ -35,12 +35,12 @@ void begin_iteration() {
     }
 }
 
-void cover(uint identifier, float share) {
+void cover(uint identifier, float coverage) {
     uint last = first + parameters.pair_count - 1u;
     for (uint pair = first; pair <= last; pair++) {
         uvec2 held = pairs[pair];
         if (held.x != 0u && held.x != identifier && pair != last) continue;
-        pairs[pair] = uvec2(held.x == 0u ? identifier : held.x, floatBitsToUint(uintBitsToFloat(held.y) + share));
+        pairs[pair] = uvec2(held.x == 0u ? identifier : held.x, floatBitsToUint(uintBitsToFloat(held.y) + coverage));
         return;
     }
 }
@@ -65,9 +65,9 @@ void main() {
     if (any_catchers && caught_after[index] != 0u && caught_after[index] <= parameters.segment) return;
     if (catches) caught_after[index] = parameters.segment + 1u;
     float hidden = catches ? 1.0 : 1.0 - (transparent.r + transparent.g + transparent.b) / 3.0;
-    float share = hidden * (throughput.r + throughput.g + throughput.b) / 3.0;
-    if (!(share > 0.0)) return;
+    float coverage = hidden * (throughput.r + throughput.g + throughput.b) / 3.0;
+    if (!(coverage > 0.0)) return;
     bool by_material = parameters.names == NAMES_OF_MATERIALS;
     uint name = by_material ? closure.material : attributes[closure.triangle].instance;
-    cover(identifiers[name], share / float(iteration.number_in_film));
+    cover(identifiers[name], coverage / float(iteration.number_in_film));
 }

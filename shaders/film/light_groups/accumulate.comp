@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an iteration found of the light of a group enters the running mean of each pixel.
+// The light of a group in an iteration enters the running mean of each pixel.
 
 layout(local_size_x = 64) in;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Light of an iteration by light group, W/(m^2 sr): for each pixel of the band, for each group, what the pixel has got
-// but for photons, and what its gathering ray found so. Needs the member groups of the parameters.
+// but for photons, and what arrives along the ray of its final gather. Needs the member groups of the parameters.
 #include <LightGroups>
 buffer GroupedLight;
 

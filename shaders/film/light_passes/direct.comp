@@ -12,7 +12,7 @@ readonly buffer Visibility;
 readonly buffer Contributions;
 readonly buffer LightSplits;
 readonly buffer Importons;
-buffer FoundCaustics;
+buffer GatheredCaustics;
 
 void main() {
     uint index = active_path();
@@ -24,7 +24,10 @@ void main() {
     if (contribution.w > 0.0) {
         if (parameters.caustics == 0u) return;
         bool caustic = (history & HISTORY_CAUSTIC) != 0u, after_diffuse = (history & HISTORY_DIFFUSE) != 0u;
-        found_caustics[index].rgb += light * (caustic ? vec3(1.0) : after_diffuse ? glossy + transmission : vec3(0.0));
+        gathered_caustics[index].rgb += light
+                                        * (caustic         ? vec3(1.0)
+                                           : after_diffuse ? glossy + transmission
+                                                           : vec3(0.0));
     } else if (parameters.scattered == 0u) return;
     else if (first_scatter(history) != SCATTER_NONE) add_scattered_light(first_scatter(history), true, index, light);
     else {

@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What pixels took of a part of what their gathering rays and those of their neighbors found, for the passes of light.
+// Adds to the passes the radiance that pixels reuse from their own final gather and those of their neighbors, by part.
 
 layout(local_size_x = 64) in;
 

@@ -66,11 +66,11 @@ void main() {
     if (index == NO_PATH) return;
     bool first = iteration.number_in_film == 1u && parameters.segment == 0u;
     if (first) motion_vectors[index] = vec4(0.0);
-    if (!(rays[index].maximum_distance > 0.0) || !looks_for_surface(camera_paths[index].flags)) return;
+    if (!(rays[index].maximum_distance > 0.0) || !needs_first_surface(camera_paths[index].flags)) return;
     Closure closure = closures[index];
-    if (!closure_hit(closure) || is_passed_by(closure)) return;
+    if (!closure_hit(closure) || is_skipped(closure)) return;
     // Those found before: passes.comp counts this one.
-    uint found = first ? 0u : pass_counts[index].y;
+    uint surface_count = first ? 0u : pass_counts[index].y;
     vec4 mean = motion_vectors[index];
-    motion_vectors[index] = mean + (vector_at(hits[index]) - mean) / float(found + 1u);
+    motion_vectors[index] = mean + (vector_at(hits[index]) - mean) / float(surface_count + 1u);
 }

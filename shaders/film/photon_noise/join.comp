@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Adds to the samples of pixels what gathering rays found of photons with random signs, once it was shared.
+// Adds to the samples of pixels the light of photons with random signs that their final gather brings.
 
 layout(local_size_x = 64) in;
 

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps of some pixels what an iteration found apart from photons, all that it found, and what its photons add with
-// random signs. Then the photons with their signs take the place of what was found, for the final gather to share.
+// Keeps for some pixels the light without photons, all light, and the light of photons with random signs. The photons
+// with their signs then replace the radiance along the rays of the final gather, which neighboring pixels reuse.
 
 layout(local_size_x = 64) in;
 

@@ -14,19 +14,19 @@ float fractal_noise(int dimensions, int type, int normalize_sum, vec4 p, float d
     for (int octave = 0; octave <= last && weight > 0.001; ++octave) {
         // Scaling p anew or step by step differs by rounding, which large coordinates make visible.
         float noise = signed_noise(dimensions, type == NOISE_FBM ? scale * p : p);
-        float share = float(octave) <= detail ? 1.0 : fract(detail);
+        float fraction = float(octave) <= detail ? 1.0 : fract(detail);
         if (type == NOISE_FBM) {
             sum += noise * amplitude;
             total += amplitude;
-            value = mix(value, normalize_sum != 0 ? 0.5 * sum / total + 0.5 : sum, share);
+            value = mix(value, normalize_sum != 0 ? 0.5 * sum / total + 0.5 : sum, fraction);
         } else if (type == NOISE_MULTIFRACTAL) {
-            value *= share * amplitude * noise + 1.0;
+            value *= fraction * amplitude * noise + 1.0;
         } else if (type == NOISE_HETERO_TERRAIN) {
-            value += share * (noise + offset) * amplitude * (octave == 0 ? 1.0 : value);
+            value += fraction * (noise + offset) * amplitude * (octave == 0 ? 1.0 : value);
         } else if (type == NOISE_HYBRID_MULTIFRACTAL) {
             weight = min(weight, 1.0);
             float signal = (noise + offset) * amplitude;
-            value += share * weight * signal;
+            value += fraction * weight * signal;
             weight *= gain * signal;
         } else {
             float ridge = offset - abs(noise);

@@ -48,11 +48,11 @@ float signed_noise(int dimensions, vec4 p) {
     for (uint corner = 0u; corner < (1u << dimensions); ++corner) {
         uvec4 side = uvec4(corner, corner >> 1u, corner >> 2u, corner >> 3u) & 1u;
         vec4 far = vec4(side);
-        vec4 share = 1.0 - fade + far * (2.0 * fade - 1.0);
-        float weight = share.x;
-        if (dimensions > 1) weight *= share.y;
-        if (dimensions > 2) weight *= share.z;
-        if (dimensions > 3) weight *= share.w;
+        vec4 weights = 1.0 - fade + far * (2.0 * fade - 1.0);
+        float weight = weights.x;
+        if (dimensions > 1) weight *= weights.y;
+        if (dimensions > 2) weight *= weights.z;
+        if (dimensions > 3) weight *= weights.w;
         sum += weight * perlin_gradient(dimensions, hash_words(dimensions, key + side), near - far);
     }
     float scale = dimensions == 1 ? 0.25 : dimensions == 2 ? 0.6616 : dimensions == 3 ? 0.982 : 0.8344;

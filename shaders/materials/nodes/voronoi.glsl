@@ -28,18 +28,18 @@ void node_tex_voronoi(int voronoi_dimensions, int metric, int feature, int norma
     float amplitude = 1.0, octave_scale = 1.0, total = edge ? furthest : 0.0;
     int last = roughness == 0.0 || feature == VORONOI_N_SPHERE_RADIUS ? 0 : int(ceil(detail));
     for (int i = 0; i <= last; ++i) {
-        float share = float(i) <= detail ? 1.0 : fract(detail);
+        float fraction = float(i) <= detail ? 1.0 : fract(detail);
         VoronoiOctave octave =
             voronoi_octave(dimensions, metric, feature, smoothness, exponent, randomness, p * octave_scale);
         if (edge) {
             float reached = min(distance_out, octave.distance / octave_scale);
-            total = mix(total, mix(total, furthest / octave_scale, amplitude), share);
-            distance_out = mix(distance_out, mix(distance_out, reached, amplitude), share);
+            total = mix(total, mix(total, furthest / octave_scale, amplitude), fraction);
+            distance_out = mix(distance_out, mix(distance_out, reached, amplitude), fraction);
         } else {
-            total += share * amplitude;
-            distance_out += share * amplitude * octave.distance;
-            color += share * amplitude * octave.color;
-            place = mix(place, mix(place, octave.position / octave_scale, amplitude), share);
+            total += fraction * amplitude;
+            distance_out += fraction * amplitude * octave.distance;
+            color += fraction * amplitude * octave.color;
+            place = mix(place, mix(place, octave.position / octave_scale, amplitude), fraction);
         }
         octave_scale *= lacunarity;
         amplitude *= roughness;

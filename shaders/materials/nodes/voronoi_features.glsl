@@ -15,13 +15,13 @@ struct VoronoiOctave {
 void voronoi_blend(inout VoronoiOctave octave, bool first, float smoothness, float reached, vec3 color, vec4 point,
                    vec4 axes) {
     float lead = octave.distance - reached;
-    float share = smoothness > 0.0 ? smoothstep(0.0, 1.0, 0.5 + 0.5 * lead / smoothness) : lead > 0.0 ? 1.0 : 0.0;
-    if (first) share = 1.0;
-    float correction = smoothness * share * (1.0 - share);
-    octave.distance = mix(octave.distance, reached, share) - correction;
+    float blend = smoothness > 0.0 ? smoothstep(0.0, 1.0, 0.5 + 0.5 * lead / smoothness) : lead > 0.0 ? 1.0 : 0.0;
+    if (first) blend = 1.0;
+    float correction = smoothness * blend * (1.0 - blend);
+    octave.distance = mix(octave.distance, reached, blend) - correction;
     correction /= 1.0 + 3.0 * smoothness;
-    octave.color = mix(octave.color, color, share) - correction;
-    octave.position = mix(octave.position, point, share) - correction * axes;
+    octave.color = mix(octave.color, color, blend) - correction;
+    octave.position = mix(octave.position, point, blend) - correction * axes;
 }
 
 // From a place in a cell to the nearest plane halfway between the nearest point and another one; or half the way

@@ -4,6 +4,6 @@
 #include "photons/light_gbuffer/fragment.glsl"
 
 void main() {
-    TexelFragment found = texel_fragment();
-    if (before_horizon(found)) atomicAdd(light_texels[found.texel].count, 1u);
+    TexelFragment fragment = texel_fragment();
+    if (before_horizon(fragment)) atomicAdd(light_texels[fragment.texel].count, 1u);
 }

@@ -17,7 +17,7 @@ struct TexelFragment {
     uint texel;
     uint triangle;
     vec2 depths;
-    bool seen;
+    bool is_covered;
 };
 
 TexelFragment texel_fragment() {
@@ -28,10 +28,10 @@ TexelFragment texel_fragment() {
     vec3 b = view_point(view, triangle_vertices[3u * job.x + 1u].xyz);
     vec3 c = view_point(view, triangle_vertices[3u * job.x + 2u].xyz);
     vec2 depths;
-    bool seen = cone_depths(a, b, c, texel_cone(view, texel), view.margin, depths);
-    return TexelFragment(view, texel_number(job.y, texel), job.x, depths, seen);
+    bool is_covered = cone_depths(a, b, c, texel_cone(view, texel), view.margin, depths);
+    return TexelFragment(view, texel_number(job.y, texel), job.x, depths, is_covered);
 }
 
-bool before_horizon(TexelFragment found) {
-    return found.seen && found.depths.x <= texel_horizon(found.view, light_texels[found.texel]);
+bool before_horizon(TexelFragment fragment) {
+    return fragment.is_covered && fragment.depths.x <= texel_horizon(fragment.view, light_texels[fragment.texel]);
 }

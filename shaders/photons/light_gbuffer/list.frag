@@ -5,7 +5,7 @@
 writeonly buffer TexelTriangles;
 
 void main() {
-    TexelFragment found = texel_fragment();
-    if (!before_horizon(found) || light_texels[found.texel].count > MOST_TRIANGLES) return;
-    texel_triangles[atomicAdd(light_texels[found.texel].end, 1u)] = found.triangle;
+    TexelFragment fragment = texel_fragment();
+    if (!before_horizon(fragment) || light_texels[fragment.texel].count > MOST_TRIANGLES) return;
+    texel_triangles[atomicAdd(light_texels[fragment.texel].end, 1u)] = fragment.triangle;
 }

@@ -4,9 +4,9 @@
 #include "photons/light_gbuffer/fragment.glsl"
 
 void main() {
-    TexelFragment found = texel_fragment();
-    if (!found.seen) return;
-    uint complement = ~floatBitsToUint(found.depths.y);
-    if (light_texels[found.texel].depth_complement < complement)
-        atomicMax(light_texels[found.texel].depth_complement, complement);
+    TexelFragment fragment = texel_fragment();
+    if (!fragment.is_covered) return;
+    uint complement = ~floatBitsToUint(fragment.depths.y);
+    if (light_texels[fragment.texel].depth_complement < complement)
+        atomicMax(light_texels[fragment.texel].depth_complement, complement);
 }

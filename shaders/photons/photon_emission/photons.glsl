@@ -40,12 +40,12 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
     vec3 t, b;
     tangent_frame(direction, t, b);
     float radius = iteration.scene_radius, shadows = target_shadows();
-    bool seen = shadows > 0.0;
-    vec2 place = choice.aimed && seen ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
-                                      : radius * sample_disk(choice.place);
+    bool has_targets = shadows > 0.0;
+    vec2 place = choice.aimed && has_targets ? sample_target_shadow(t, b, shadows, choice.target, choice.place)
+                                             : radius * sample_disk(choice.place);
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
     float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
-                          seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
+                          has_targets ? target_shadow_pdf(t, b, shadows, place) : 0.0, has_targets, choice);
     vec3 origin = iteration.scene_center + place.x * t + place.y * b - radius * direction;
     return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
 }
@@ -57,17 +57,17 @@ const float WITHIN_FRACTION = 0.25;
 // direction. A soft light is that disk. A sphere shines outward from its near side, and inward from its far side.
 Emission emit_from_point(Light light, EmissionChoice choice) {
     float cones = target_cones(light.position);
-    bool seen = cones > 0.0, spot = light.kind == LIGHT_SPOT;
-    vec3 direction = choice.aimed && seen
+    bool has_targets = cones > 0.0, spot = light.kind == LIGHT_SPOT;
+    vec3 direction = choice.aimed && has_targets
                          ? sample_target_direction(light.position, cones, choice.target, choice.direction)
                      : spot ? sample_cone(light.normal, light.spread_scale, choice.direction)
                             : sample_sphere(choice.direction);
     float plain = 1.0 / (4.0 * PI);
     if (spot)
         plain = dot(direction, light.normal) >= 1.0 - light.spread_scale ? 1.0 / (2.0 * PI * light.spread_scale) : 0.0;
-    float aimed = seen ? target_direction_pdf(light.position, cones, direction) : 0.0;
+    float aimed = has_targets ? target_direction_pdf(light.position, cones, direction) : 0.0;
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
-    float pdf = mixed_pdf(light, plain, choice.place, square, aimed, seen, choice);
+    float pdf = mixed_pdf(light, plain, choice.place, square, aimed, has_targets, choice);
     float forward, reach = INFINITY_DISTANCE, part = 1.0;
     vec3 origin = light.position + sample_cross_section(light.radius, direction, choice.place, forward);
     if ((light.flags & LIGHT_SOFT) != 0u) forward = 0.0;
@@ -88,9 +88,10 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
     vec3 origin = point.position, normal = point.normal, radiance = point.radiance;
     uint triangle = point.triangle;
     float cones = target_cones(origin);
-    bool seen = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
+    bool has_targets = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
     vec3 direction;
-    if (choice.aimed && seen) direction = sample_target_direction(origin, cones, choice.target, choice.direction);
+    if (choice.aimed && has_targets)
+        direction = sample_target_direction(origin, cones, choice.target, choice.direction);
     else if (narrow) direction = sample_cone(normal, 1.0 - light.cosine_cone, choice.direction);
     else {
         // Both sides shine: the lower half of the first number goes to the back.
@@ -111,8 +112,8 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
                          : hemisphere_to_square(front ? normal : -normal, direction);
     if (both_sides) square.x = 0.5 * (square.x + (front ? 1.0 : 0.0));
     vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
-    float pdf = mixed_pdf(light, plain, place, square, seen ? target_direction_pdf(origin, cones, direction) : 0.0,
-                          seen, choice);
+    float pdf = mixed_pdf(light, plain, place, square,
+                          has_targets ? target_direction_pdf(origin, cones, direction) : 0.0, has_targets, choice);
     float tangent = sqrt(max(0.0, 1.0 - cosine * cosine)) / max(cosine, 1e-6);
     if (!both_sides) radiance *= spread_attenuation(light, tangent);
     return Emission(origin + (front ? point.ray_offset : -point.ray_offset) * normal, triangle, direction,

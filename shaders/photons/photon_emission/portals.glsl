@@ -58,11 +58,11 @@ float portals_pdf(Light light, vec3 direction, float across, vec3 place, vec2 di
 // Pdf in 1/m^2 of a place on the disk, as emit_from_infinity has it.
 float world_disk_pdf(Light light, vec3 t, vec3 b, vec2 place, vec2 direction_square, EmissionChoice choice) {
     float radius = iteration.scene_radius, shadows = target_shadows();
-    bool seen = shadows > 0.0;
+    bool has_targets = shadows > 0.0;
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
     choice.aimed_share = aimed_share(light);
     return mixed_pdf(light, plain, disk_to_square(place / radius), direction_square,
-                     seen ? target_shadow_pdf(t, b, shadows, place) : 0.0, seen, choice);
+                     has_targets ? target_shadow_pdf(t, b, shadows, place) : 0.0, has_targets, choice);
 }
 
 Emission emit_from_world(Light light, EmissionChoice choice) {

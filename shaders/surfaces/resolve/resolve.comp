@@ -153,7 +153,7 @@ void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool 
 
 #ifdef ASKS_FOR_SHADOW_RAYS
 // What photons straight from their light leave of it to what lies behind: the light that shadow rays bring there.
-vec3 passed_by_shadow_rays(Surface surface, uint first_constant, float u_choice) {
+vec3 shadow_ray_transparency(Surface surface, uint first_constant, float u_choice) {
     surface.ray = RAY_SHADOW;
     ClosureBuilder builder = builder_at(surface, u_choice);
     evaluate_material(surface, first_constant, builder);
@@ -171,12 +171,12 @@ void evaluate_nodes(Surface surface, uint material, uint flags, float u_choice, 
     // First, since lobes may lie where those of the other closure do.
     bool passes_light = parameters.path_kind == PATH_OF_PHOTON && (flags & PHOTON_DIRECT) != 0u
                         && materials[material].passes_shadow_rays != 0u;
-    vec3 passed = vec3(0.0);
-    if (passes_light) passed = passed_by_shadow_rays(surface, first_constant, u_choice);
+    vec3 transparency = vec3(0.0);
+    if (passes_light) transparency = shadow_ray_transparency(surface, first_constant, u_choice);
 #endif
     evaluate_material(surface, first_constant, builder);
 #ifdef ASKS_FOR_SHADOW_RAYS
-    if (passes_light) builder.closure.transparent = passed;
+    if (passes_light) builder.closure.transparent = transparency;
 #endif
 }
 

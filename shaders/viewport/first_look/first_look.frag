@@ -37,8 +37,8 @@ void main() {
     vec3 diffuse = surface.color * (1.0 - surface.metallic);
     vec3 light = parameters.headlight * facing * (diffuse + 0.25 * f0 * min(alpha2 / (slope * slope), 4.0));
     light += diffuse * surroundings(n.z) + f0 * surroundings(2.0 * facing * n.z - viewer.z);
-    float seen = max(opacity, 0.0);
-    combined = vec4(seen * (light + parameters.exposure * surface.emission), seen);
+    float alpha = max(opacity, 0.0);
+    combined = vec4(alpha * (light + parameters.exposure * surface.emission), alpha);
     bool specular = surface.opacity < 1.0 || (surface.metallic > 0.5 && surface.roughness < SPECULAR_ROUGHNESS);
     surface_seen = vec4(n, view_depth);
     surface_number = vec2(instance + 1u, 2u * material + (specular ? 1u : 0u));

@@ -22,7 +22,7 @@ writeonly buffer Picture { vec4 picture[]; };
 writeonly buffer Counts { float counts[]; };
 uniform sampler2D surfaces;
 uniform sampler2D numbers;
-uniform sampler2D looks;
+uniform sampler2D plain_picture;
 uniform sampler2D last_surfaces;
 uniform sampler2D last_numbers;
 
@@ -34,7 +34,7 @@ const uint SEARCHED = 32u, ENOUGH = 8u;
 const float SEARCH_STEP = 1.5, GOLDEN_ANGLE = 2.39996323;
 
 // A pixel's surface: normal and view depth; instance and material, 0 of the background.
-struct Seen {
+struct VisibleSurface {
     vec3 normal;
     float depth;
     vec2 number;
@@ -47,16 +47,16 @@ struct Sum {
 
 ivec2 size_of(CameraView view) { return ivec2(view.width, view.height); }
 
-bool is_specular(Seen seen) { return (uint(seen.number.y + 0.5) & 1u) != 0u; }
+bool is_specular(VisibleSurface surface) { return (uint(surface.number.y + 0.5) & 1u) != 0u; }
 
-Seen seen_at(ivec2 pixel) {
+VisibleSurface surface_at(ivec2 pixel) {
     vec4 surface = texelFetch(surfaces, pixel, 0);
-    return Seen(surface.xyz, surface.w, texelFetch(numbers, pixel, 0).xy);
+    return VisibleSurface(surface.xyz, surface.w, texelFetch(numbers, pixel, 0).xy);
 }
 
-Seen last_seen_at(ivec2 pixel) {
+VisibleSurface last_surface_at(ivec2 pixel) {
     vec4 surface = texelFetch(last_surfaces, pixel, 0);
-    return Seen(surface.xyz, surface.w, texelFetch(last_numbers, pixel, 0).xy);
+    return VisibleSurface(surface.xyz, surface.w, texelFetch(last_numbers, pixel, 0).xy);
 }
 
 // What differences of depth are measured by: the depth, or what a view of parallel rays is wide.
@@ -64,24 +64,24 @@ float depth_scale(float depth) {
     return camera.projection == PROJECTION_ORTHOGRAPHIC ? camera.window.y - camera.window.x : depth;
 }
 
-bool shows_the_same(Seen a, Seen b) {
+bool shows_the_same(VisibleSurface a, VisibleSurface b) {
     return a.number == b.number && dot(a.normal, b.normal) >= SAME_NORMAL * dot(a.normal, a.normal);
 }
 
 // Where the last picture had what a pixel sees, in its pixels, and how deep; false where it was behind that camera.
-bool find_last_place(ivec2 pixel, Seen seen, out vec3 found) {
-    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC, background = seen.number.x == 0.0;
+bool find_last_place(ivec2 pixel, VisibleSurface surface, out vec3 place) {
+    bool parallel = camera.projection == PROJECTION_ORTHOGRAPHIC, background = surface.number.x == 0.0;
     vec2 at = mix(camera.window.xz, camera.window.yw, (vec2(pixel) + 0.5) / vec2(size_of(camera)));
-    found = vec3(vec2(pixel) + 0.5, 0.0);
+    place = vec3(vec2(pixel) + 0.5, 0.0);
     if (parallel && background) return true;
-    vec3 axis = parallel ? vec3(at, seen.depth) : (background ? 1.0 : seen.depth) * vec3(at, 1.0);
+    vec3 axis = parallel ? vec3(at, surface.depth) : (background ? 1.0 : surface.depth) * vec3(at, 1.0);
     vec3 offset = mat3(camera.right, camera.up, camera.forward) * axis;
     if (!background) offset += camera.position - last_camera.position + parameters.way_of_origins;
     vec3 p = vec3(dot(offset, last_camera.right), dot(offset, last_camera.up), dot(offset, last_camera.forward));
     if (!parallel && !(p.z > 0.0)) return false;
     vec2 window = parallel ? p.xy : p.xy / p.z;
-    vec2 place = (window - last_camera.window.xz) / (last_camera.window.yw - last_camera.window.xz);
-    found = vec3(place * vec2(size_of(last_camera)), p.z);
+    vec2 at_last = (window - last_camera.window.xz) / (last_camera.window.yw - last_camera.window.xz);
+    place = vec3(at_last * vec2(size_of(last_camera)), p.z);
     return true;
 }
 
@@ -92,24 +92,24 @@ void add_last(ivec2 pixel, float weight, inout Sum sum) {
     sum.weight += weight;
 }
 
-Sum moved(Seen seen, vec3 place) {
+Sum moved(VisibleSurface surface, vec3 place) {
     Sum sum = Sum(vec4(0.0), 0.0, 0.0);
     ivec2 size = size_of(last_camera), low = ivec2(floor(place.xy - 0.5));
     vec2 part = place.xy - 0.5 - vec2(low);
     if (any(lessThan(place.xy, vec2(-0.5))) || any(greaterThan(place.xy, vec2(size) + 0.5))) return sum;
     for (int corner = 0; corner < 4; ++corner) {
         ivec2 step = ivec2(corner & 1, corner >> 1), pixel = clamp(low + step, ivec2(0), size - 1);
-        Seen last = last_seen_at(pixel);
+        VisibleSurface last = last_surface_at(pixel);
         vec2 near = mix(1.0 - part, part, vec2(step));
-        bool near_enough = seen.number.x == 0.0 || abs(last.depth - place.z) <= SAME_DEPTH * depth_scale(place.z);
-        if (!shows_the_same(seen, last) || !near_enough) continue;
+        bool near_enough = surface.number.x == 0.0 || abs(last.depth - place.z) <= SAME_DEPTH * depth_scale(place.z);
+        if (!shows_the_same(surface, last) || !near_enough) continue;
         add_last(pixel, near.x * near.y + 1e-4, sum);
     }
     return sum;
 }
 
 // What the last picture shows of the same object and material around the place.
-Sum filled(Seen seen, vec3 place) {
+Sum filled(VisibleSurface surface, vec3 place) {
     Sum sum = Sum(vec4(0.0), 0.0, 0.0);
     ivec2 last = size_of(last_camera) - 1;
     vec2 middle = clamp(place.xy, vec2(0.0), vec2(last + 1));
@@ -117,8 +117,8 @@ Sum filled(Seen seen, vec3 place) {
         float angle = GOLDEN_ANGLE * float(tap);
         vec2 offset = SEARCH_STEP * float(tap) * vec2(cos(angle), sin(angle));
         ivec2 pixel = clamp(ivec2(floor(middle + offset)), ivec2(0), last);
-        Seen there = last_seen_at(pixel);
-        if (there.number == seen.number) add_last(pixel, 1.0, sum);
+        VisibleSurface there = last_surface_at(pixel);
+        if (there.number == surface.number) add_last(pixel, 1.0, sum);
     }
     return sum;
 }
@@ -133,16 +133,16 @@ vec4 new_at(ivec2 pixel) {
 // The brightest that is new around a pixel; light that is taken away counts alike.
 float brightest_around(ivec2 pixel) {
     ivec2 middle = pixel * new_size() / size_of(camera);
-    float found = 0.0;
+    float brightest = 0.0;
     for (int k = 0; k < 9; ++k) {
         ivec2 near = clamp(middle + ivec2(k % 3, k / 3) - 1, ivec2(0), new_size() - 1);
-        found = max(found, abs(luminance(new_at(near).rgb)));
+        brightest = max(brightest, abs(luminance(new_at(near).rgb)));
     }
-    return found;
+    return brightest;
 }
 
 // The new picture's pixels around, within reach of its pixels, that show the same; all of them where none does.
-vec4 upsampled(ivec2 pixel, Seen seen) {
+vec4 upsampled(ivec2 pixel, VisibleSurface surface) {
     vec2 scale = vec2(size_of(camera)) / vec2(new_size()), place = (vec2(pixel) + 0.5) / scale - 0.5;
     ivec2 low = ivec2(floor(place));
     vec4 same = vec4(0.0), all_around = vec4(0.0);
@@ -151,15 +151,16 @@ vec4 upsampled(ivec2 pixel, Seen seen) {
         for (int x = -1; x <= 2; ++x) {
             ivec2 tap = low + ivec2(x, y), inside = clamp(tap, ivec2(0), new_size() - 1);
             vec2 near = max(1.0 - 0.5 * abs(vec2(tap) - place), 0.0);
-            float share = near.x * near.y;
+            float bilinear = near.x * near.y;
             vec4 color = new_at(inside);
-            all_around += share * color;
-            all_weight += share;
-            Seen other = seen_at(clamp(ivec2((vec2(inside) + 0.5) * scale), ivec2(0), size_of(camera) - 1));
-            if (!shows_the_same(seen, other)) continue;
-            if (abs(other.depth - seen.depth) > NEAR_DEPTH * depth_scale(seen.depth)) continue;
-            same += share * color;
-            weight += share;
+            all_around += bilinear * color;
+            all_weight += bilinear;
+            VisibleSurface other =
+                surface_at(clamp(ivec2((vec2(inside) + 0.5) * scale), ivec2(0), size_of(camera) - 1));
+            if (!shows_the_same(surface, other)) continue;
+            if (abs(other.depth - surface.depth) > NEAR_DEPTH * depth_scale(surface.depth)) continue;
+            same += bilinear * color;
+            weight += bilinear;
         }
     }
     return weight > MIN_WEIGHT ? same / weight : all_around / all_weight;
@@ -169,24 +170,24 @@ void main() {
     uint index = invocation_index();
     if (index >= camera.width * camera.height) return;
     ivec2 pixel = ivec2(index % camera.width, index / camera.width);
-    Seen seen = seen_at(pixel);
+    VisibleSurface surface = surface_at(pixel);
     vec4 color = vec4(0.0);
     float count = 0.0;
     if (parameters.new_count > 0.0) {
-        color = new_size() == size_of(camera) ? new_at(pixel) : upsampled(pixel, seen);
+        color = new_size() == size_of(camera) ? new_at(pixel) : upsampled(pixel, surface);
         count = parameters.new_count;
     }
     if (parameters.max_history > 0.0) {
         vec3 place;
-        bool in_front = find_last_place(pixel, seen, place);
+        bool in_front = find_last_place(pixel, surface, place);
         Sum last = Sum(vec4(0.0), 0.0, 0.0);
-        if (in_front) last = moved(seen, place);
-        bool found = last.weight > 0.0;
-        if (in_front && !found && count == 0.0) last = filled(seen, place);
+        if (in_front) last = moved(surface, place);
+        bool has_history = last.weight > 0.0;
+        if (in_front && !has_history && count == 0.0) last = filled(surface, place);
         if (last.weight > 0.0) {
-            bool specular = is_specular(seen);
-            float most = specular ? parameters.max_specular_history : parameters.max_history;
-            float history = found ? min(last.count / last.weight, most) : 0.0;
+            bool specular = is_specular(surface);
+            float max_count = specular ? parameters.max_specular_history : parameters.max_history;
+            float history = has_history ? min(last.count / last.weight, max_count) : 0.0;
             vec4 before = last.color / last.weight;
             if (specular && count > 0.0) {
                 float brightness = max(abs(luminance(before.rgb)), 1e-20);
@@ -195,7 +196,7 @@ void main() {
             color = count == 0.0 ? before : mix(color, before, history / (history + count));
             count += history;
         } else if (count == 0.0) {
-            color = texelFetch(looks, pixel, 0);
+            color = texelFetch(plain_picture, pixel, 0);
         }
     }
     picture[index] = color;

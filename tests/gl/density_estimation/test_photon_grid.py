@@ -40,7 +40,7 @@ class Device:
         directions, whole = PHOTON_ORIGIN.zeros(len(photons)), np.uint32([0, len(photons)])
         for buffer, array in zip(buffers, (photons, importons, directions, whole), strict=True):
             buffer.upload(array)
-        sizes = StageSizes(len(importons), 1, photons=len(photons), segments=1)
+        sizes = StageSizes(len(importons), 1, photons=len(photons), photon_segments=1)
         listed = PhotonList(self._context, self._library, sizes)
         blocks = dict(zip(("Photons", "PhotonOrigins", "PhotonRange"), (b.buffer for b in (buffers[0], *buffers[2:]))))
         listed.collect(blocks, len(photons), DirectPhotons.ALL)

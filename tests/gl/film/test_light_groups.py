@@ -117,7 +117,7 @@ def test_groups_that_are_off_take_no_memory(renderer):
         "light groups of photons": 4 * 256,
         "light of groups": 2 * 24 * pixels,
         "passes of light groups": 2 * 12 * pixels,
-        "seen light of groups": 16 * pixels,
-        "found light of a group": 16 * pixels,
+        "radiance before emission": 16 * pixels,
         "gathered light of a group": 16 * pixels,
+        "reused light of a group": 16 * pixels,
     }

@@ -37,11 +37,11 @@ void main() {
         vec3 all = vec3(0.0);
         for (uint light = 0u; light < iteration.light_count; ++light) {
             float distance, pdf;
-            all += passed_light(lights[light], origin, direction, parameters.reach, distance, pdf);
+            all += intersected_radiance(lights[light], origin, direction, parameters.reach, distance, pdf);
         }
         ScatterPoint from = ScatterPoint(LitPoint(origin, vec3(0.0), false, 0u), 0.0, 0.0, false, 0u);
-        PassedLights passed =
-            passed_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0, vec3(0.0));
+        IntersectedLights passed =
+            intersect_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0, vec3(0.0));
         results[index] = vec4(passed.radiance.xy, all.xy);
         return;
     }

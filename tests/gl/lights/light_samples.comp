@@ -26,7 +26,7 @@ void main() {
             if (emissive_triangles[emissive].triangle == sampled.triangle)
                 pdf *= emissive_triangles[emissive].probability;
     } else if (sampled.distance > 0.0)
-        seen = passed_light(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);
+        seen = intersected_radiance(lights[0], parameters.point, sampled.direction, INFINITY_DISTANCE, distance, pdf);
     results[3u * index] = vec4(sampled.direction, sampled.distance);
     results[3u * index + 1u] = vec4(sampled.weight, sampled.pdf);
     results[3u * index + 2u] = vec4(seen, pdf);

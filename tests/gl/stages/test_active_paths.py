@@ -52,7 +52,7 @@ def test_lists_hold_what_lives(context, library, count):
         aims = rng.random(count) < 0.5
         taken.take(paths, device_rays(context, aims))
         for listed, expected in ((paths, alive), (taken, alive & aims)):
-            assert listed.most == count
+            assert listed.capacity == count
             np.testing.assert_array_equal(np.sort(listed.read()), np.nonzero(expected)[0])
             groups = -(-int(expected.sum()) // 64)
             assert header(listed)["groups"].tolist() == [groups, min(groups, 1), 1]
@@ -167,7 +167,7 @@ def test_pictures_are_those_of_all_paths(mapper, other_mapper, monkeypatch, kind
         monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", SIZE * 8)
     got = outcome(mapper, shown_by(kind))
     monkeypatch.setattr(ActivePaths, "keep", lambda paths, rays: None)
-    monkeypatch.setattr(ActivePaths, "take", lambda paths, others, rays: paths.fill(others.most))
+    monkeypatch.setattr(ActivePaths, "take", lambda paths, others, rays: paths.fill(others.capacity))
     expected = outcome(other_mapper, shown_by(kind))
     assert (expected["radiance"][..., :3] > 0).mean() > 0.3
     for name, value in expected.items():

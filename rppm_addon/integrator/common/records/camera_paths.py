@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Camera paths, and what they have been scattered by."""
+"""Camera paths, and the history of their scattering."""
 
 import enum
 
@@ -22,11 +22,12 @@ class PathHistory(enum.IntFlag):
     is not transparent."""
 
     AGAIN = 4
-    """More than one has scattered it."""
+    """More than one surface has scattered the path."""
     DIFFUSE = 8
-    """The last that did was diffuse."""
+    """The last scattering was diffuse."""
     CAUSTIC = 16
-    """One that was not diffuse has scattered it after one that was: Cycles ends it there where Caustics are off."""
+    """A lobe that is not diffuse has scattered the path after a diffuse one: Cycles ends it there where Caustics are
+    off."""
 
 
 class CameraPathFlag(enum.IntFlag):
@@ -35,7 +36,7 @@ class CameraPathFlag(enum.IntFlag):
     CAMERA_TRANSPARENT = 1
     """The path has met nothing but transparent surfaces since the camera."""
     SURFACE_FOUND = 2
-    """The passes have the path's first surface."""
+    """The path has reached its first surface, and the passes have it."""
     FINAL_GATHER = 4
     """The path's ray is of a final gather, or follows one: it has left a surface by a lobe that stores photons."""
     DIFFUSE = 8
@@ -54,7 +55,7 @@ class CameraPathFlag(enum.IntFlag):
     LIGHTS_FOUND = 512
     """A shadow ray has looked for the light objects and emissive triangles that the path leads to."""
     SEEN_THROUGH = 2048
-    """Since the event, the path has passed surfaces that stop no shadow rays from there."""
+    """Since the event, the path has crossed only surfaces that stop no shadow rays from there."""
 
 
 Constants("CameraPathFlags", PATH=CameraPathFlag)

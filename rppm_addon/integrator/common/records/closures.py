@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Closures: what a surface scatters, as resolved at a hit."""
+"""Closures: scattering and emission of a surface at a hit."""
 
 import enum
 
@@ -119,15 +119,15 @@ CLOSURE = Record(
     ray_offset="float",
     lobes=(CLOSURE_LOBE, CLOSURE_LOBES),
 )
-"""All that scattering, storing and estimating need to know about a hit. Normals face the arriving
-path; bit 0 of ``flags`` tells that it came from behind, the upper half is the holdout. The diffuse roughness comes with
+"""BSDF, emission and geometry at a hit, all that later stages read about it. Normals face the arriving
+path; bit 0 of ``flags`` is ClosureFlag.BACKFACING, the upper half is the holdout. The diffuse roughness comes with
 the albedo that its interreflection takes (common/bsdf/diffuse.glsl). ``ray_offset``: how far along the geometric normal
 rays begin, meters (common/geometry.glsl)."""
 StorageBlock("Closures", "Closure closures[];")
 StorageBlock("ExitClosures", "Closure exit_closures[];")
-"""Where camera paths that went below a surface have come out of it, and else what they have met."""
+"""Closures at the exits of subsurface walks, and for other camera paths at their hits."""
 TERMINATOR_SHIFT, TERMINATOR_STEPS = 10, 63
-"""Where in a closure's flags, and in how many steps, the shading offset of the shadow terminator stands."""
+"""Bit position in a closure's flags, and number of steps, of the shading offset of the shadow terminator."""
 Constants(
     "Terminators",
     TERMINATOR_SHIFT=TERMINATOR_SHIFT,

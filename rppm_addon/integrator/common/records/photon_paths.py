@@ -43,8 +43,8 @@ class PhotonFlag(enum.IntFlag):
 
 
 class PhotonHistory(enum.IntFlag):
-    """Further flags, in a photon where its path has NOT_GLOSSY and NOT_TRANSMITTED, which nobody asks photons for; in a
-    path so many bits lower, where a photon has ACTIVE and STORED."""
+    """Further flags, in a photon where its path has NOT_GLOSSY and NOT_TRANSMITTED, which stored photons do not need;
+    in a path PHOTON_HISTORY_SHIFT bits lower, where a photon has ACTIVE and STORED."""
 
     SCATTERED_BY_LOBE = 128
     """A lobe that is not diffuse was the last to scatter the path."""

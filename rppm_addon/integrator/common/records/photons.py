@@ -28,7 +28,7 @@ PHOTON_SEGMENT_SHIFT = 22
 PHOTON_CONTRIBUTED = 1 << 31
 Constants("PhotonNumbers", PHOTON_SEGMENT_SHIFT=PHOTON_SEGMENT_SHIFT, PHOTON_CONTRIBUTED=PHOTON_CONTRIBUTED)
 StorageBlock("PhotonRange", "uint photon_first; uint photon_end;")
-"""Where the photons of the current segment begin among those of the iteration, and where they end."""
+"""Range of the photons of the current segment among those of the iteration."""
 StorageBlock("Photons", "Photon photons[];")
 StorageBlock(
     "StoredPhotons", "uint stored_count; uint global_photon_count; uint indirect_count; uint stored_photons[];"

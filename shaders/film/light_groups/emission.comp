@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What camera paths met in a segment, but for light objects (passed.comp): the world, or a surface that shines.
+// Adds the emission of the world or of a surface at the end of a ray to its group (light objects: light_objects.comp).
 
 layout(local_size_x = 64) in;
 
@@ -12,7 +12,7 @@ uniform Parameters { LightGroupParameters parameters; };
 #include "film/light_groups/grouped.glsl"
 readonly buffer Closures;
 readonly buffer Radiances;
-readonly buffer SeenLight;
+readonly buffer RadianceBefore;
 readonly buffer LightGroupTable;
 readonly buffer Attributes;
 #include "film/light_groups/table.glsl"
@@ -22,5 +22,5 @@ void main() {
     if (index == NO_PATH) return;
     uint triangle = closures[index].triangle;
     uint group = triangle == NO_TRIANGLE ? iteration.world_group : light_group(0u, triangle);
-    add_to_group(index, group, false, radiances[index].rgb - seen_light[index].rgb);
+    add_to_group(index, group, false, radiances[index].rgb - radiance_before[index].rgb);
 }

@@ -1,24 +1,24 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The light objects that camera paths pass, by their groups, before the paths scatter on. Beside, a path then meets
-// light of one group (seen.comp): what its radiance gets beyond what is left here.
+// Adds the light objects that the rays of camera paths intersect to their groups, before the paths are scattered. All
+// other emission at the end of a ray is of one group: emission.comp adds the radiance beyond what is kept here.
 
 layout(local_size_x = 64) in;
 
-#include <PassedLightParameters>
+#include <LightObjectParameters>
 #include "common/iteration.glsl"
 #include "common/active_paths.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/gathering.glsl"
-uniform Parameters { PassedLightParameters parameters; };
+uniform Parameters { LightObjectParameters parameters; };
 #include "film/light_groups/grouped.glsl"
 readonly buffer Closures;
 readonly buffer Rays;
 readonly buffer CameraPaths;
 readonly buffer Radiances;
-writeonly buffer SeenLight;
+writeonly buffer RadianceBefore;
 readonly buffer LightGroupTable;
 readonly buffer FinalGatherOrigins;
 readonly buffer FinalGatherHits;
@@ -27,10 +27,10 @@ readonly buffer Materials;
 
 uint path_index;
 vec3 path_throughput;
-void add_passed_light(uint light, vec3 radiance) {
+void add_intersected_light(uint light, vec3 radiance) {
     add_to_group(path_index, light_group_table[light], false, path_throughput * radiance);
 }
-#define REPORT_PASSED_LIGHT add_passed_light
+#define REPORT_INTERSECTED_LIGHT add_intersected_light
 #include "lights/light_tree.glsl"
 #include "camera_paths/importons/scatter_point.glsl"
 
@@ -38,15 +38,15 @@ void main() {
     path_index = active_path();
     if (path_index == NO_PATH) return;
     Ray ray = rays[path_index];
-    vec3 passed = vec3(0.0);
+    vec3 light_objects = vec3(0.0);
     CameraPath path = camera_paths[path_index];
     if (ray.maximum_distance > 0.0 && path_collects_emission(path) && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
         path_throughput = path.throughput;
         if (is_final_gather(path)) path_throughput *= final_gather_origins[path_index].weight;
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
-        passed = path_throughput
-                 * visible_light(scatter_point(path_index, path, ray), ray, distance, camera_ray_kind(path.flags),
-                                 path_absorption(path.flags));
+        light_objects = path_throughput
+                        * visible_light(scatter_point(path_index, path, ray), ray, distance,
+                                        camera_ray_kind(path.flags), path_absorption(path.flags));
     }
-    seen_light[path_index] = vec4(radiances[path_index].rgb + passed, 0.0);
+    radiance_before[path_index] = vec4(radiances[path_index].rgb + light_objects, 0.0);
 }

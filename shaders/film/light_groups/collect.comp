@@ -19,8 +19,8 @@ writeonly buffer GatherRadiances;
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count || final_gather_origins[index].reuse_radius == NO_FINAL_GATHER) return;
-    vec3 found = grouped_light_of(index, parameters.group, true)
+    vec3 light = grouped_light_of(index, parameters.group, true)
                  + read_group_sum(index, parameters.group, true) * parameters.quantum;
-    if (parameters.group == iteration.world_group) found += final_gather_hits[index].radiance;
-    gather_radiances[index] = vec4(found, 0.0);
+    if (parameters.group == iteration.world_group) light += final_gather_hits[index].radiance;
+    gather_radiances[index] = vec4(light, 0.0);
 }

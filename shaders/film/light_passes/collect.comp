@@ -1,6 +1,6 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of what gathering rays found: of the world, that nothing but transparency lay in the way of; and caustics.
+// Parts of the radiance along the rays of the final gather: direct light of the world, and caustics.
 
 layout(local_size_x = 64) in;
 
@@ -16,8 +16,8 @@ readonly buffer FinalGatherHits;
 readonly buffer Importons;
 readonly buffer LightSums;
 #include "film/light_passes/read_light_sum.glsl"
-writeonly buffer FoundDirect { vec4 found_direct[]; };
-buffer FoundCaustics;
+writeonly buffer GatheredDirect { vec4 gathered_direct[]; };
+buffer GatheredCaustics;
 
 void main() {
     uint index = invocation_index();
@@ -25,9 +25,9 @@ void main() {
     vec3 world = final_gather_hits[index].radiance;
     uint history = departing_history(importons[index].history);
     if (parameters.scattered != 0u)
-        found_direct[index] = vec4((history & HISTORY_AGAIN) == 0u ? world : vec3(0.0), 0.0);
+        gathered_direct[index] = vec4((history & HISTORY_AGAIN) == 0u ? world : vec3(0.0), 0.0);
     if (parameters.caustics == 0u) return;
     vec3 caustic = read_light_sum(index, FINAL_GATHER_CAUSTICS, parameters.light_sums) * parameters.quantum;
     if ((history & HISTORY_CAUSTIC) != 0u) caustic += world;
-    found_caustics[index].rgb += caustic;
+    gathered_caustics[index].rgb += caustic;
 }

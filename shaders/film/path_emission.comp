@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The light that camera paths met in a segment, for the passes of what shines by itself and, where a surface has
-// scattered the path before, of light. Denoisers take it as albedo.
+// Emission at the end of the rays of camera paths, for the passes Emission and Environment or, where a surface has
+// scattered the path before, for those of scattered light. Denoisers take it as albedo.
 
 layout(local_size_x = 64) in;
 
@@ -17,14 +17,14 @@ void main() {
     if (index == NO_PATH) return;
     vec4 before = pass_paths[index];
     uint path = floatBitsToUint(before.w);
-    vec3 met = radiances[index].rgb - before.rgb;
-    if ((path & PASS_PATH_STRAIGHT) != 0u)
-        add_to_pass((path & PASS_PATH_HIT) != 0u ? PASS_EMISSION : PASS_ENVIRONMENT, index, met);
+    vec3 emitted = radiances[index].rgb - before.rgb;
+    if ((path & PASS_PATH_CAMERA_TRANSPARENT) != 0u)
+        add_to_pass((path & PASS_PATH_HIT) != 0u ? PASS_EMISSION : PASS_ENVIRONMENT, index, emitted);
     else {
         // What an importon says of how its path came is of the last surface.
         bool hit = (path & PASS_PATH_HIT) != 0u;
         uint history = hit ? arrived_history(importons[index].history) : departing_history(importons[index].history);
-        add_scattered_light(first_scatter(history), (history & HISTORY_AGAIN) != 0u, index, met);
+        add_scattered_light(first_scatter(history), (history & HISTORY_AGAIN) != 0u, index, emitted);
     }
-    if ((path & PASS_PATH_DENOISED) != 0u) add_to_pass(PASS_DENOISING_ALBEDO, index, min(met, 1.0));
+    if ((path & PASS_PATH_DENOISED) != 0u) add_to_pass(PASS_DENOISING_ALBEDO, index, min(emitted, 1.0));
 }
