@@ -30,11 +30,7 @@ def rppm_here(*arguments):
     root, output, errors = logging.getLogger(), io.StringIO(), io.StringIO()
     handlers, level = root.handlers[:], root.level
     try:
-        with (
-            mock.patch.dict(os.environ),
-            contextlib.redirect_stdout(output),
-            contextlib.redirect_stderr(errors),
-        ):
+        with mock.patch.dict(os.environ), contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
             status = cli.main([str(argument) for argument in arguments])
     except SystemExit as end:  # of what argparse refuses
         status = end.code
@@ -42,6 +38,13 @@ def rppm_here(*arguments):
         root.handlers[:] = handlers
         root.setLevel(level)
     return status, output.getvalue(), errors.getvalue()
+
+
+def succeed(run, *arguments, **options):
+    """Run the program by ``rppm`` or ``rppm_here``, which must succeed: standard output, standard error."""
+    status, output, errors = run(*arguments, **options)
+    assert status == 0, errors
+    return output, errors
 
 
 @pytest.fixture

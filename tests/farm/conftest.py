@@ -10,7 +10,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from cli.conftest import blend_files, rppm, rppm_here, saved_scene, start_rppm  # noqa: F401 (fixtures)
+from cli.conftest import blend_files, rppm, rppm_here, saved_scene, start_rppm, succeed  # noqa: F401 (fixtures)
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMEOUT_SECONDS = 60.0

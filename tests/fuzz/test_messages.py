@@ -117,8 +117,8 @@ def test_records(data):
 @pytest.fixture(scope="module")
 def frames():
     writer = FrameWriter()
-    reader = FrameReader(**writer.reserve(64))
-    yield reader, writer.write(1, np.ones((4, 8, 4), np.float32)), writer._slots.block.name
+    slots = writer.reserve(64)
+    yield FrameReader(**slots), writer.write(1, np.ones((4, 8, 4), np.float32)), slots["block"]
     writer.release()
 
 

@@ -43,6 +43,7 @@ class Pipes:
         return shown
 
     def announce(self, frames, shown, generation, value, **changes):
+        """Write a frame of one value and say so, with changes to what is said."""
         import numpy as np
 
         slots = frames.reserve(SIZE * SIZE)
@@ -113,15 +114,17 @@ def is_killed_amid_a_frame(pipes):
     if marker.exists():
         wait_for_leave(pipes)
     marker.touch()
-    slot = frames._slots
-    slot.headers[2]["guard"] += 1
-    slot.headers[2]["generation"], slot.headers[2]["sequence"] = shown["generation"], 2
-    slot.headers[2]["width"] = slot.headers[2]["height"] = SIZE
-    slot.pixels[2][: 2 * SIZE * SIZE] = np.nan
-    announced = {"generation": shown["generation"], "sequence": 2, "width": SIZE, "height": SIZE}
-    pipes.say("frame", session=shown["session"], slot=2, progress=0.5, **announced)
-    time.sleep(0.2)
-    os.kill(os.getpid(), signal.SIGKILL)
+
+    class Deadly(np.ndarray):
+        """A picture that is announced, and the end of its process, before its pixels are copied."""
+
+        def reshape(self, *shape):
+            announced = {"generation": shown["generation"], "sequence": 2, "width": SIZE, "height": SIZE}
+            pipes.say("frame", session=shown["session"], slot=2, progress=0.5, **announced)
+            time.sleep(0.2)
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    frames.write(shown["generation"], np.full((SIZE, SIZE, 4), np.nan, np.float32).view(Deadly))
 
 
 def loses_the_device(pipes):

@@ -148,29 +148,32 @@ def test_a_process_takes_the_chosen_mesa():
 
 @pytest.fixture
 def unpacking(monkeypatch, tmp_path):
-    """The program of set-up, with an apt that gives what ``replies`` say by the first argument that they know."""
+    """The program of set-up, with a system whose apt has ``targets`` and whose libraries lack what is ``missing``."""
     specification = importlib.util.spec_from_file_location("unpack_mesa", ROOT / ".ci" / "unpack_mesa.py")
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     module.calls = []
-    module.missing = ""
+    module.missing, module.failure = "", ""
     module.targets = "file:/mirror/ bookworm main\nfile:/other/ bookworm-updates main\nfile:/tools/ stable main\n"
 
-    def run(command, folder=None, check=True):
+    def run(command, cwd=None, **_):
         module.calls.append(command)
+        output = failure = ""
         if "indextargets" in command:
-            return module.targets
-        if "depends" in command:
-            return "mesa-libgallium\n  Depends: libc6\n  Depends: libdrm2\n  Depends: libdrm-amdgpu1\n"
-        if "download" in command:
-            (folder / "mesa.deb").touch()
+            output = module.targets
+        elif "depends" in command:
+            output = "mesa-libgallium\n  Depends: libc6\n  Depends: libdrm2\n  Depends: libdrm-amdgpu1\n"
+        elif "download" in command:
+            (cwd / "mesa.deb").touch()
         elif command[0] == "dpkg-deb":
             make_libraries(Path(command[-1]))
         elif command[0] == "ldd":
-            return f"\tlibc.so.6 => /lib/libc.so.6 (0x1)\n\tlibdrm.so.2 => not found\n{module.missing}"
-        return ""
+            output = f"\tlibc.so.6 => /lib/libc.so.6 (0x1)\n\tlibdrm.so.2 => not found\n{module.missing}"
+        elif "info" in command:
+            failure = module.failure
+        return subprocess.CompletedProcess(command, int(bool(failure)), output, failure)
 
-    monkeypatch.setattr(module, "_run", run)
+    monkeypatch.setattr(subprocess, "run", run)
     monkeypatch.setattr(module, "has_gpu", lambda: False)
     monkeypatch.setattr(module, "system_release", lambda: "debian 12")
     monkeypatch.delenv("RPPM_MESA", raising=False)
@@ -200,15 +203,8 @@ def test_set_up_names_a_version_that_was_not_tested(unpacking, tmp_path, capsys)
     assert "tested with" not in capsys.readouterr().out
 
 
-def test_set_up_leaves_out_a_driver_that_does_not_start(unpacking, tmp_path, monkeypatch, capsys):
-    known = unpacking._run
-
-    def run(command, folder=None, check=True):
-        if "info" in command:
-            raise unpacking.UnavailableError("no OpenGL context")
-        return known(command, folder, check)
-
-    monkeypatch.setattr(unpacking, "_run", run)
+def test_set_up_leaves_out_a_driver_that_does_not_start(unpacking, tmp_path, capsys):
+    unpacking.failure = "no OpenGL context"
     assert unpacking.main(tmp_path / ".mesa") == 0
     assert "will do (no OpenGL context)" in capsys.readouterr().out
     assert {path.name for path in tmp_path.iterdir()} == {".mesa.tried"}

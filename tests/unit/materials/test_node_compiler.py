@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from support.every_node import programs
 
-from rppm_addon.materials import compiler
 from rppm_addon.materials.compiler.compiled_graph import MAX_NODE_RAYS, GraphError, NodeRayCounts, Resource
 from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
@@ -217,7 +216,7 @@ def test_a_chain_of_five_thousand_nodes():
 
 def test_more_nodes_than_drivers_compile_are_refused(monkeypatch):
     """Only nodes that are in use count: others cost nothing."""
-    monkeypatch.setattr(compiler, "MAX_CALLS", 50)
+    monkeypatch.setattr("rppm_addon.materials.compiler.compiler.MAX_CALLS", 50)
     graph = NodeGraph()
     for count in (30, 60):
         value = graph.add("tex_coord", "uv")

@@ -30,8 +30,7 @@ def test_light_goes_below(graph):
 
 
 @pytest.mark.parametrize(
-    "graph",
-    [NodeGraph(), principled(), principled(thin_wall=True, subsurface_weight=1.0), subsurface(used=False)],
+    "graph", [NodeGraph(), principled(), principled(thin_wall=True, subsurface_weight=1.0), subsurface(used=False)]
 )
 def test_light_stays_above(graph):
     assert not has_subsurface(graph)

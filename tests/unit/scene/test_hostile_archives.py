@@ -110,7 +110,7 @@ def test_members_that_are_none(tmp_path, members):
 
 def test_what_would_fill_the_memory_is_not_unpacked(tmp_path, monkeypatch):
     """A thousandth of the bytes on the disk; the limit is lowered, to make the test short."""
-    monkeypatch.setattr(storage, "_MIN_LIMIT", 1 << 22)
+    monkeypatch.setattr(storage, "MIN_LIMIT", 1 << 22)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with pytest.raises(SceneError, match="would take 64.0 MiB of memory for .* KiB on the disk"):
         load_scene(archive(tmp_path / "bomb.npz", document=np.zeros(1 << 26, np.uint8)))

@@ -7,21 +7,10 @@ import numpy as np
 import pytest
 from support.full_scene import full_scene, graph_of_everything
 
-from rppm_addon.scene import (
-    AttributeDomain,
-    Link,
-    MeshAttribute,
-    NodeGraph,
-    ShaderNode,
-    Texels,
-    load_scene,
-    save_scene,
-)
+from rppm_addon.scene import AttributeDomain, Link, MeshAttribute, NodeGraph, ShaderNode, Texels, load_scene, save_scene
 from rppm_addon.scene.errors import SceneError
 from rppm_addon.scene.meshes import SMOOTH_NORMALS, Dicing, RayVisibility
-from rppm_addon.scene.storage.validation import check_record, check_scene
-from rppm_addon.session.render.results import PhotonStatistics, Progress
-from rppm_addon.session.transport.sessions import SessionStatus
+from rppm_addon.scene.storage.validation import check_scene
 
 NAN, INF = float("nan"), float("inf")
 
@@ -167,22 +156,6 @@ def test_names_do_not_reach_the_terminal_as_they_are():
     with pytest.raises(SceneError) as error:
         check_scene(scene)
     assert "\x1b" not in str(error.value) and "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("field", "status"),
-    [
-        ("iteration", SessionStatus(progress=Progress("many", 2, 1.0, 5))),
-        ("noise", SessionStatus(progress=Progress(1, 2, 1.0, 5, noise=None))),
-        ("warnings", SessionStatus(warnings=[5])),
-        ("source_watts", SessionStatus(photon_statistics=PhotonStatistics(source_watts={"a": "b"}))),
-    ],
-)
-def test_a_status_of_the_other_process_is_held_to_its_declaration(field, status):
-    check_record(SessionStatus(), SessionStatus)
-    check_record(SessionStatus(progress=Progress(1, 2, 1.0, 5)), SessionStatus)
-    with pytest.raises(SceneError, match=field):
-        check_record(status, SessionStatus)
 
 
 def test_texels_of_a_mesh_are_let_in():

@@ -147,6 +147,6 @@ def test_windows_waits_for_who_has_the_file_open(tmp_path, monkeypatch):
         whole_files.replace(made, path)
     tried.clear()
     monkeypatch.setattr(whole_files.sys, "platform", "win32")
-    monkeypatch.setattr(whole_files, "_BETWEEN_TRIES_SECONDS", 0.0)
+    monkeypatch.setattr(whole_files.time, "sleep", lambda seconds: None)
     whole_files.replace(made, path)
     assert path.read_bytes() == b"new" and len(tried) == 3 and not made.exists()
