@@ -51,6 +51,8 @@ def test_the_device_alone_as_json(tmp_path):
     told = json.loads((tmp_path / "info.json").read_text())
     assert set(told) == {"blender", "device", "denoiser"} and told["device"]["limits"]
     assert f"Denoise  {told['denoiser']}\n" in output
+    for name in ("Device ", "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", "Missing "):
+        assert name in output
 
 
 @pytest.mark.parametrize("lacking", ["MESA_GL_VERSION_OVERRIDE=4.2", "MESA_EXTENSION_OVERRIDE=-GL_ARB_compute_shader"])

@@ -47,13 +47,12 @@ def _children_with(process, *words, recursive):
 
 
 @contextlib.contextmanager
-def dask(folder, *arguments):
-    """The dask program, which finds the RPPM of a folder; ends with the context."""
-    command = [sys.executable, "-m", "dask", *arguments]
-    environment = os.environ | {"PYTHONPATH": str(folder)}
+def started(words, folder, **variables):
+    """A Python module as a program in a folder; ends with the context."""
+    command, environment = [sys.executable, "-m", *words], os.environ | variables
     with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.DEVNULL) as process:
         try:
-            yield
+            yield process
         finally:
             process.terminate()
             try:

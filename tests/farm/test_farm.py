@@ -16,7 +16,7 @@ from rppm_addon.commands.picture_files import is_whole
 from rppm_addon.pictures import read_exr
 from rppm_addon.session.checkpoints.checkpoint_file import read_summary
 
-from .conftest import ROOT, dask, renders_below, rppm_here, start_rppm, succeed, wait_for, workers_of
+from .conftest import ROOT, renders_below, rppm_here, start_rppm, started, succeed, wait_for, workers_of
 
 
 def farm(blend, folder, *options):
@@ -223,12 +223,12 @@ def test_workers_of_a_scheduler_need_the_same_rppm(tmp_path, blend_files):
     scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
     scheduler += ["--scheduler-file", str(tmp_path / "scheduler.json")]
     with contextlib.ExitStack() as stack:
-        stack.enter_context(dask(other, *scheduler))
+        stack.enter_context(started(["dask", *scheduler], other, PYTHONPATH=str(other)))
         wait_for("the scheduler", (tmp_path / "scheduler.json").exists)
         address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
         worker = ("worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard", "--name")
-        stack.enter_context(dask(ROOT, *worker, "same"))
-        stack.enter_context(dask(other, *worker, "other"))
+        for name, folder in (("same", ROOT), ("other", other)):
+            stack.enter_context(started(["dask", *worker, name], folder, PYTHONPATH=str(folder)))
         with distributed.Client(address) as client:
             wait_for("both workers", lambda: len(client.scheduler_info()["workers"]) == 2)
         farm = ("farm", blend_files[0], "--frames", "1..2", "--scheduler", address)

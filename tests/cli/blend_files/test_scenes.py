@@ -2,21 +2,15 @@
 """Files of several scenes in the program."""
 
 import argparse
-import subprocess
-import sys
 
 import pytest
-from cli.conftest import succeed
+from cli.conftest import run_in_blender, succeed
 
 from rppm_addon.commands.options.options import refuse_blend_options
 from rppm_addon.pictures import read_exr
 from rppm_addon.scene.errors import SettingsError
 
 _MAKE_SCENES = """
-import sys
-import bpy
-import rppm_addon
-rppm_addon.register()
 bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
 first = bpy.context.scene
 first.rppm.samples, first.rppm.photons = 1, 256
@@ -26,7 +20,6 @@ other.use_fake_user = True
 first.name, other.name = "Open", "Closed"
 other.render.resolution_x = 20
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
-rppm_addon.unregister()
 """
 
 
@@ -34,8 +27,7 @@ rppm_addon.unregister()
 def scenes_file(tmp_path_factory, blend_files):
     """The floor in a scene of 24 pixels across, which is open, and in one of 20."""
     path = tmp_path_factory.mktemp("scenes") / "scenes.blend"
-    command = [sys.executable, "-c", _MAKE_SCENES, str(blend_files[0]), str(path)]
-    subprocess.run(command, check=True, timeout=120, capture_output=True)
+    run_in_blender(_MAKE_SCENES, blend_files[0], path)
     return path
 
 

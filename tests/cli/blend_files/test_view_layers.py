@@ -2,24 +2,18 @@
 """View layers and stereo of .blend files in the program: one file with all, or one each."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import OpenEXR
 import PIL.Image
 import pytest
-from cli.conftest import succeed
+from cli.conftest import run_in_blender, succeed
 
 from rppm_addon.commands.picture_set import path_of_picture
 from rppm_addon.pictures import PictureName, read_exr
 
 _MAKE_LAYERS = """
-import sys
-import bpy
-import rppm_addon
-rppm_addon.register()
 bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
 scene = bpy.context.scene
 scene.rppm.samples, scene.rppm.photons = 3, 256
@@ -32,7 +26,6 @@ for name, use in (("Gray one", True), ("Off", False)):
     layer.use, layer.material_override, layer.use_pass_z = use, override, False
 scene.view_layers["Gray one"].samples = 2
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
-rppm_addon.unregister()
 """
 FIRST, GRAY = "ViewLayer", "Gray one"
 
@@ -41,8 +34,7 @@ FIRST, GRAY = "ViewLayer", "Gray one"
 def layers_file(tmp_path_factory, blend_files):
     """The floor with two view layers in use, the second all gray with fewer samples, and one that is not."""
     path = tmp_path_factory.mktemp("layers") / "layers.blend"
-    command = [sys.executable, "-c", _MAKE_LAYERS, str(blend_files[0]), str(path)]
-    subprocess.run(command, check=True, timeout=120, capture_output=True)
+    run_in_blender(_MAKE_LAYERS, blend_files[0], path)
     return path
 
 

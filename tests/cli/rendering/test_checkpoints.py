@@ -4,12 +4,11 @@
 import dataclasses
 import json
 import signal
-import time
 
 import numpy as np
 import PIL.Image
 import pytest
-from cli.conftest import rppm_here, start_rppm, succeed
+from cli.conftest import interrupt, rppm_here, start_rppm, succeed
 from support.floor import floor_scene
 from support.render_states import assert_same_state
 
@@ -84,15 +83,7 @@ def test_a_render_that_a_signal_ends_is_gone_on_with(tmp_path, rppm, two_floors,
     checkpoint, picture = tmp_path / "still.exr", tmp_path / "out.exr"
     arguments = ["-o", picture, "--checkpoint", checkpoint, "--checkpoint-minutes", 0]
     with start_rppm("render", two_floors, *arguments, "--seconds", 90) as process:
-        give_up = time.monotonic() + 60
-        while not checkpoint.exists() and process.poll() is None and time.monotonic() < give_up:
-            time.sleep(0.01)
-        process.send_signal(number)
-        try:
-            _, errors = process.communicate(timeout=30)
-        finally:
-            process.kill()
-    assert "Traceback" not in errors
+        errors = interrupt(process, number, checkpoint.exists)
     stopped = read_summary(checkpoint).iteration
     if number == signal.SIGTERM:
         assert process.returncode == 128 + signal.SIGTERM
@@ -192,6 +183,5 @@ def test_stills_of_a_blend_file(tmp_path, rppm, blend_files):
 
 
 def pixels(path):
-
     with PIL.Image.open(path) as image:
         return np.asarray(image)

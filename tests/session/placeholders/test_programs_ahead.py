@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 from session.conftest import run_to_the_end
 from support.floor import floor_scene
+from support.graphs import surface_graph
 
 from rppm_addon.gl.programs import program_maker
 from rppm_addon.gl.programs.binary_cache import BinaryCache
@@ -46,10 +47,8 @@ class Collected:
         pass
 
 
-def simple(kind, output="bsdf", **inputs):
-    graph = NodeGraph()
-    graph.surface = graph.add(kind, output, **inputs)
-    return Material(kind, graph)
+def simple(kind):
+    return Material(kind, surface_graph(kind))
 
 
 def on_strands():
@@ -57,7 +56,7 @@ def on_strands():
 
 
 def wax():
-    return simple("subsurface_scattering", "bssrdf")
+    return simple("subsurface_scattering")
 
 
 def displaced():

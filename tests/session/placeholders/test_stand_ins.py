@@ -8,9 +8,10 @@ import pytest
 from session.conftest import with_settings
 from session.frame_receiver import FrameReceiver
 from support.floor import floor_scene
+from support.graphs import surface_graph
 
 from rppm_addon.denoising.denoiser import Denoiser
-from rppm_addon.scene import Material, NodeGraph
+from rppm_addon.scene import Material
 from rppm_addon.session.placeholders import stand_ins
 from rppm_addon.session.placeholders.known_programs import KnownPrograms
 from rppm_addon.session.placeholders.stand_ins import StandIns
@@ -29,9 +30,7 @@ class Compiling:
 
 
 def plain(kind):
-    graph = NodeGraph()
-    graph.surface = graph.add(kind, "emission" if kind == "emission" else "bsdf")
-    return Material(kind, graph)
+    return Material(kind, surface_graph(kind))
 
 
 KINDS = ("bsdf_diffuse", "bsdf_glossy", "bsdf_glass", "bsdf_transparent")
@@ -90,8 +89,7 @@ def test_the_picture_begins_anew_with_what_is_ready(device, monkeypatch):
     library, known = Compiling(), KnownPrograms()
     scene = with_settings(floor_scene(), iterations=2)
     # Of the structure that faces without a material have: nothing is compiled for it.
-    black = NodeGraph()
-    black.surface = black.add("bsdf_diffuse", "bsdf", color=0.0)
+    black = surface_graph("bsdf_diffuse", color=0.0)
     monkeypatch.setattr(stand_ins, "stand_in_graph", lambda graph, images: black)
     monkeypatch.setattr(stand_ins, "FEWEST_PROGRAMS", 1)
     pictures = {}

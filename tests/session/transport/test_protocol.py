@@ -8,40 +8,34 @@ from pathlib import Path
 
 import pytest
 
-from rppm_addon.session.transport.protocol import (
-    FROM_CHILD,
-    LONGEST_MESSAGE,
-    TO_CHILD,
-    ProtocolError,
-    check_message,
-    frame_message,
-    read_message,
-)
+from rppm_addon.session.transport import protocol
+from rppm_addon.session.transport.protocol import ProtocolError
 
 ROOT = Path(__file__).resolve().parents[3]
 
 
 def test_messages_come_one_after_the_other():
     messages = [("a", {}), ("b", {"text": "\u00e4\u20ac\n", "number": 1.5e-300, "list": [None, True]})]
-    stream = io.BytesIO(b"".join(frame_message(kind, **content) for kind, content in messages))
-    assert [read_message(stream) for _ in messages] == [{"kind": kind, **content} for kind, content in messages]
-    assert read_message(stream) is None
+    stream = io.BytesIO(b"".join(protocol.frame_message(kind, **content) for kind, content in messages))
+    for kind, content in messages:
+        assert protocol.read_message(stream) == {"kind": kind, **content}
+    assert protocol.read_message(stream) is None
 
 
 @pytest.mark.parametrize("length", range(12))
 def test_a_pipe_that_ends_amid_a_message_has_ended(length):
-    whole = frame_message("a")
-    assert len(whole) > 12 and read_message(io.BytesIO(whole[:length])) is None
+    whole = protocol.frame_message("a")
+    assert len(whole) > 12 and protocol.read_message(io.BytesIO(whole[:length])) is None
 
 
 @pytest.mark.parametrize(
     "text",
     [b"\4\0\0\0abcd", b"\2\0\0\0[]", b"\2\0\0\0{}", b'\x0a\0\0\0{"kind":3}', b"\2\0\0\0\xff\xfe",
-     (LONGEST_MESSAGE + 1).to_bytes(4, "little")],
+     (protocol.LONGEST_MESSAGE + 1).to_bytes(4, "little")],
 )  # fmt: skip
 def test_malformed_text(text):
     with pytest.raises(ProtocolError):
-        read_message(io.BytesIO(text))
+        protocol.read_message(io.BytesIO(text))
 
 
 def test_the_child_can_read_its_first_message_before_it_finds_numpy():
@@ -53,10 +47,10 @@ def test_the_child_can_read_its_first_message_before_it_finds_numpy():
 
 
 def test_messages_of_the_tables_are_let_in():
-    for table in (TO_CHILD, FROM_CHILD):
+    for table in (protocol.TO_CHILD, protocol.FROM_CHILD):
         for kind, fields in table.items():
             values = {name: (types if isinstance(types, type) else types[0])() for name, types in fields.items()}
-            check_message({"kind": kind, **values}, table)
+            protocol.check_message({"kind": kind, **values}, table)
 
 
 @pytest.mark.parametrize(
@@ -71,10 +65,10 @@ def test_messages_of_the_tables_are_let_in():
 )  # fmt: skip
 def test_other_messages_are_refused(message):
     with pytest.raises(ProtocolError):
-        check_message(message, FROM_CHILD)
+        protocol.check_message(message, protocol.FROM_CHILD)
 
 
 def test_a_message_of_brackets():
     text = b"[" * 100000
     with pytest.raises(ProtocolError):
-        read_message(io.BytesIO(len(text).to_bytes(4, "little") + text))
+        protocol.read_message(io.BytesIO(len(text).to_bytes(4, "little") + text))

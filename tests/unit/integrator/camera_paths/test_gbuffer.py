@@ -1,21 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bands, subpixel offsets and the camera record."""
+"""Subpixel offsets and the camera record."""
 
 import numpy as np
 import pytest
 
 from rppm_addon.integrator.camera_paths.gbuffer import filter_offsets
-from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS, bands_of
 from rppm_addon.integrator.common.camera_view import camera_view
 from rppm_addon.scene import Camera, PixelFilter
 from rppm_addon.scene.errors import SceneError
-
-
-@pytest.mark.parametrize("size", [(1, 1), (128, 128), (1920, 1080), (7680, 4320), (300000, 3), (3, 300000)])
-def test_bands_cover_every_row_once(size):
-    rows = [row for band in bands_of(*size) for row in range(band.first_row, band.first_row + band.rows)]
-    assert rows == list(range(size[1]))
-    assert all(band.pixel_count <= max(MAXIMUM_BAND_PIXELS, size[0]) for band in bands_of(*size))
 
 
 def test_offsets_have_the_moments_of_the_filter():

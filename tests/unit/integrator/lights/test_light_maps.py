@@ -50,12 +50,6 @@ def test_means_are_over_what_shines():
     assert (mean_of(corners, area, MapShape.PLACES) < 1.0 - 0.75**2).all()
 
 
-def graph_of(kind: str, output: str) -> NodeGraph:
-    graph = NodeGraph()
-    graph.surface = graph.add("emission", "emission", color=graph.add(kind, output))
-    return graph
-
-
 @pytest.mark.parametrize(
     ("kind", "output", "what"),
     [
@@ -68,6 +62,8 @@ def graph_of(kind: str, output: str) -> NodeGraph:
     ],
 )
 def test_what_lights_vary_by(kind, output, what):
-    varies = light_variation(graph_of(kind, output))
+    graph = NodeGraph()
+    graph.surface = graph.add("emission", "emission", color=graph.add(kind, output))
+    varies = light_variation(graph)
     found = {name for name in ("place", "direction", "uv", "distance") if getattr(varies, name)}
     assert found == {what} and bool(varies) == (what != "distance")
