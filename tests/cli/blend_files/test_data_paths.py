@@ -11,6 +11,13 @@ from rppm_addon.scene.errors import SettingsError
 bpy = pytest.importorskip("bpy", reason="the bpy module is not installed")
 
 
+PRINCIPLED = 'materials["Material"].node_tree.nodes["Principled BSDF"].inputs'
+
+
+def principled(place):
+    return bpy.data.materials["Material"].node_tree.nodes["Principled BSDF"].inputs[place].default_value
+
+
 @pytest.fixture
 def roots():
     bpy.ops.wm.read_factory_settings(use_empty=False)
@@ -53,16 +60,8 @@ def test_what_is_no_assignment_is_refused(text):
         ("camera", 'objects["Cube"]', lambda: bpy.context.scene.camera.name == "Cube"),
         ("render.filepath", '"//a b"', lambda: bpy.context.scene.render.filepath == "//a b"),
         ('["mine"]', "2.5", lambda: bpy.context.scene["mine"] == 2.5),
-        (
-            'materials["Material"].node_tree.nodes["Principled BSDF"].inputs["Roughness"].default_value',
-            "0.25",
-            lambda: bpy.data.materials["Material"].node_tree.nodes["Principled BSDF"].inputs[2].default_value == 0.25,
-        ),
-        (
-            'materials["Material"].node_tree.nodes["Principled BSDF"].inputs[0].default_value',
-            "(1, 0.5, 0, 1)",
-            lambda: bpy.data.materials["Material"].node_tree.nodes["Principled BSDF"].inputs[0].default_value[1] == 0.5,
-        ),
+        (f'{PRINCIPLED}["Roughness"].default_value', "0.25", lambda: principled(2) == 0.25),
+        (f"{PRINCIPLED}[0].default_value", "(1, 0.5, 0, 1)", lambda: principled(0)[1] == 0.5),
     ],
 )
 def test_values_of_every_kind_are_set(roots, path, value, read):

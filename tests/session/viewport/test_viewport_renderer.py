@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from session.conftest import run_to_the_end
+from session.conftest import run_to_the_end, with_settings
 from session.frame_receiver import FrameReceiver
 from support.floor import floor_scene
 
@@ -31,9 +31,13 @@ def open_viewport(known_programs):
     """A function that opens viewports of one process; they share what is compiled."""
     library, opened = ProgramLibrary(context := Context.create()), []
 
-    def open_viewport():
+    def open_viewport(scene=None):
+        """A viewport, at its end with a scene if one is given, and what it sends."""
         sent = FrameReceiver()
         opened.append(ViewportRenderer(context, library, Denoiser([]), sent, known_programs))
+        if scene is not None:
+            opened[-1].show(scene, 1, False)
+            run_to_the_end(opened[-1])
         return opened[-1], sent
 
     yield open_viewport
@@ -44,9 +48,7 @@ def open_viewport(known_programs):
 
 
 def scene_of(**changes):
-    scene = floor_scene()
-    scene.settings = dataclasses.replace(scene.settings, iterations=2)
-    return dataclasses.replace(scene, **changes)
+    return dataclasses.replace(with_settings(floor_scene(), iterations=2), **changes)
 
 
 def compiled(sent):
@@ -70,9 +72,7 @@ def test_a_first_look_comes_before_anything_is_compiled(open_viewport):
 
 
 def test_there_is_none_once_there_was_a_frame(open_viewport):
-    viewport, sent = open_viewport()
-    viewport.show(scene_of(), 1, False)
-    run_to_the_end(viewport)
+    viewport, sent = open_viewport(scene_of())
     seen = len(sent.frames)
     viewport.show(scene_of(exposure=0.5), 2, False)
     run_to_the_end(viewport)
@@ -81,16 +81,12 @@ def test_there_is_none_once_there_was_a_frame(open_viewport):
 
 def test_there_is_none_when_the_programs_are_ready(open_viewport):
     for expected in (1, 0):
-        viewport, sent = open_viewport()
-        viewport.show(scene_of(), 1, False)
-        run_to_the_end(viewport)
+        viewport, sent = open_viewport(scene_of())
         assert [progress for _, progress in sent.shown].count(0.0) == expected
 
 
 def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewport, known_programs):
-    viewport, _ = open_viewport()
-    viewport.show(scene_of(), 1, False)
-    run_to_the_end(viewport)
+    viewport, _ = open_viewport(scene_of())
     scene = scene_of()
     assert known_programs.cover(scene)
     glossy = dataclasses.replace(scene.materials[0], graph=dataclasses.replace(scene.materials[0].graph))
@@ -100,9 +96,7 @@ def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewport, know
     raised.graph.displacement = raised.graph.add("displacement", "displacement", height=0.5)
     displaced = scene_of(materials=[raised])
     assert not known_programs.cover(displaced)
-    other, _ = open_viewport()
-    other.show(displaced, 1, False)
-    run_to_the_end(other)
+    open_viewport(displaced)
     assert known_programs.cover(displaced)
     divided = dataclasses.replace(scene.meshes[0], dicing=Dicing(1.0, True, False))
     assert known_programs.cover(scene_of(meshes=[divided]))
@@ -112,12 +106,9 @@ def test_large_scenes_and_new_materials_have_one_in_any_case(open_viewport, know
 
 
 def test_panoramas_have_none(open_viewport):
-    viewport, sent = open_viewport()
-    camera = dataclasses.replace(
-        scene_of().camera, panorama=Panorama(PanoramaKind.EQUIRECTANGULAR), window=(0.0, 1.0, 0.0, 1.0)
-    )
-    viewport.show(scene_of(camera=camera), 1, False)
-    run_to_the_end(viewport)
+    panorama = Panorama(PanoramaKind.EQUIRECTANGULAR)
+    camera = dataclasses.replace(scene_of().camera, panorama=panorama, window=(0.0, 1.0, 0.0, 1.0))
+    _, sent = open_viewport(scene_of(camera=camera))
     assert 0.0 not in [progress for _, progress in sent.shown] and sent.shown[-1] == (1, 1.0)
 
 
@@ -134,22 +125,14 @@ def test_it_follows_the_view_while_programs_are_compiled(open_viewport):
     run_to_the_end(viewport)
     assert sorted(sent.shown) == sent.shown, "the view jumps back"
     assert sent.shown[-1] == (2, 1.0)
-    other, other_sent = open_viewport()
-    other.show(moved, 1, False)
-    run_to_the_end(other)
-    assert (0.0 not in [progress for _, progress in other_sent.shown]) and np.array_equal(
-        sent.picture, other_sent.picture
-    )
+    _, other_sent = open_viewport(moved)
+    assert 0.0 not in [progress for _, progress in other_sent.shown]
+    np.testing.assert_array_equal(sent.picture, other_sent.picture)
 
 
 def test_a_viewport_is_done_with_its_noise(open_viewport):
-    viewport, sent = open_viewport()
-    settings = dataclasses.replace(
-        floor_scene().settings, iterations=1000, use_adaptive_sampling=True, adaptive_threshold=1.0,
-        adaptive_min_samples=33,
-    )  # fmt: skip
-    viewport.show(scene_of(settings=settings), 1, False)
-    run_to_the_end(viewport)
+    noise = {"use_adaptive_sampling": True, "adaptive_threshold": 1.0, "adaptive_min_samples": 33}
+    _, sent = open_viewport(with_settings(scene_of(), iterations=1000, **noise))
     status = sent.statuses[-1]
     assert status["settled"] and status["progress"]["iteration"] == 40
     assert 0.0 < status["progress"]["noise"] < status["progress"]["noise_threshold"] == 1.0
@@ -160,16 +143,13 @@ def turned(scene, columns):
     """The same, so many columns on."""
     left, right, bottom, top = scene.camera.window
     step = columns * (right - left) / scene.camera.width
-    return dataclasses.replace(
-        scene, camera=dataclasses.replace(scene.camera, window=(left + step, right + step, bottom, top))
-    )
+    camera = dataclasses.replace(scene.camera, window=(left + step, right + step, bottom, top))
+    return dataclasses.replace(scene, camera=camera)
 
 
 def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_viewport):
-    viewport, sent = open_viewport()
     scene = scene_of()
-    viewport.show(scene, 1, False)
-    run_to_the_end(viewport)
+    viewport, sent = open_viewport(scene)
     before, rendered = sent.picture, len(sent.statuses)
     viewport.show(turned(scene, 2), 2, True)
     viewport.run_slice()
@@ -181,16 +161,12 @@ def test_the_last_picture_moves_with_the_view_until_there_is_a_new_one(open_view
     generations = [generation for generation, _ in sent.shown]
     assert sorted(generations) == generations, "the view jumps back"
     assert sent.shown[-1] == (3, 1.0)
-    other, other_sent = open_viewport()
-    other.show(turned(scene, 4), 1, False)
-    run_to_the_end(other)
+    _, other_sent = open_viewport(turned(scene, 4))
     np.testing.assert_array_equal(sent.picture, other_sent.picture)
 
 
 def test_after_another_change_nothing_is_moved(open_viewport):
-    viewport, sent = open_viewport()
-    viewport.show(scene_of(), 1, False)
-    run_to_the_end(viewport)
+    viewport, sent = open_viewport(scene_of())
     seen = len(sent.frames)
     viewport.show(turned(scene_of(exposure=0.5), 2), 2, True)
     run_to_the_end(viewport)
@@ -198,9 +174,7 @@ def test_after_another_change_nothing_is_moved(open_viewport):
 
 
 def test_the_memory_of_pictures_is_reported(open_viewport):
-    viewport, sent = open_viewport()
-    viewport.show(scene_of(), 1, False)
-    run_to_the_end(viewport)
+    viewport, sent = open_viewport(scene_of())
     reported = sent.statuses[-1]["progress"]["memory_bytes"]
     of_pictures = reported - sum(viewport.mapper.memory_bytes.values())
     assert 0 < of_pictures <= sum(expected_bytes(StageSizes(16, 12)).values())

@@ -37,6 +37,10 @@ def texels(scene, triangle):
     return Texels(0, np.full((height, width), triangle, np.int32), *places)
 
 
+def smooth(domain, numbers):
+    return {SMOOTH_NORMALS: MeshAttribute(domain, np.zeros((4, numbers), np.float32))}
+
+
 BROKEN = [
     ("exposure", lambda scene: NAN, "exposure is nan"),
     ("exposure", lambda scene: INF, "exposure is inf"),
@@ -77,16 +81,8 @@ BROKEN = [
     ("meshes.0.positions", lambda scene: np.zeros((3, 3), np.float32), "index 3; there are 3 vertices"),
     ("meshes.0.corner_normals", lambda scene: np.zeros((5, 3), np.float32), "of 4 vertices, 4 corners"),
     ("meshes.0.attributes.heat.values", lambda scene: np.zeros((3, 3), np.float32), "there are 4 corners"),
-    (
-        "meshes.0.attributes",
-        lambda scene: {SMOOTH_NORMALS: scene.meshes[0].attributes["heat"]},
-        "must have 4 numbers for each corner",
-    ),
-    (
-        "meshes.0.attributes",
-        lambda scene: {SMOOTH_NORMALS: MeshAttribute(AttributeDomain.POINT, np.zeros((4, 4), np.float32))},
-        "must have 4 numbers for each corner",
-    ),
+    ("meshes.0.attributes", lambda scene: smooth(AttributeDomain.CORNER, 3), "must have 4 numbers for each corner"),
+    ("meshes.0.attributes", lambda scene: smooth(AttributeDomain.POINT, 4), "must have 4 numbers for each corner"),
     ("meshes.0.dicing", lambda scene: Dicing(NAN, True, False), "dicing: edge_length is nan"),
     ("meshes.0.dicing", lambda scene: Dicing(0.0, True, False), "dicing: edge_length is 0.0; it must be 1e-06 or more"),
     ("meshes.0.dicing", lambda scene: Dicing(1.0, 1, False), "dicing: in_pixels is 1; it must be a bool"),
