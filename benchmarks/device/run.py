@@ -21,8 +21,8 @@ from .. import ROOT
 from ..machine import Clock, describe, slug
 from .catalog import FIGURES, MEASUREMENTS, is_possible, scenes_of
 from .figures import ROUTES, make_cubemap
+from .results.tables import write_tables
 from .scenes import NAMES, SceneStore, Subject, subjects
-from .tables import write_tables
 
 log = logging.getLogger("benchmark")
 
@@ -135,7 +135,7 @@ def _rounded(value: object) -> object:
 def draw(files: list[Path]) -> None:
     """Draw figures beside their JSON, where Matplotlib is."""
     try:
-        from .plots import draw_figure
+        from .results.plots import draw_figure
     except ModuleNotFoundError as error:
         if error.name != "matplotlib":
             raise

@@ -186,7 +186,7 @@ def _compile(driver: Driver, programs: Sequence[Program]) -> Outcome:
         answer = folder / "results.json"
         if run.returncode or not answer.exists():
             raise LabError(f"{driver.name} ended with code {run.returncode}: {run.stderr[-1000:]}")
-        return _outcome(driver, programs, json.loads(answer.read_text(encoding="utf-8")), run.stderr)
+        return outcome_of(driver, programs, json.loads(answer.read_text(encoding="utf-8")), run.stderr)
 
 
 _UNKEPT = {"MESA_SHADER_CACHE_DISABLE": "true"}
@@ -223,7 +223,7 @@ def _newest_command(driver: Driver, folder: Path) -> tuple[list[str], dict[str, 
     return [str(WINDOWS / "enter_chroot.sh"), str(_chroot()), str(folder), *inner], dict(os.environ)
 
 
-def _outcome(driver: Driver, programs: Sequence[Program], found: dict, printed: str) -> Outcome:
+def outcome_of(driver: Driver, programs: Sequence[Program], found: dict, printed: str) -> Outcome:
     outcome = Outcome(found["device"], found["version"], found["limits"])
     _, *marked = re.split(rf"{MARK}(\d+)\n", printed)
     parts = dict(zip(map(int, marked[::2]), marked[1::2]))

@@ -25,7 +25,7 @@ def compile_programs(options: argparse.Namespace, bar: ProgressBar) -> int:
     settings, data_values = split_values(options.values)
     apply_settings(RenderSettings(), settings)
     bar.show(0.0, "reading the scene")
-    scene = _small(load_blend_or_saved(options.file, options, settings, data_values))
+    scene = small_scene(load_blend_or_saved(options.file, options, settings, data_values))
     start, processor_start = time.perf_counter(), time.process_time()
     with Renderer() as renderer:
         count = renderer.compile(
@@ -39,7 +39,7 @@ def compile_programs(options: argparse.Namespace, bar: ProgressBar) -> int:
     return 0
 
 
-def _small(scene: Scene) -> Scene:
+def small_scene(scene: Scene) -> Scene:
     """The scene as a picture that needs the same programs in the least time."""
     from .saved_scene import camera_at_resolution
 

@@ -126,7 +126,7 @@ class PictureSet(RenderObserver):
         for path in self.outputs:
             if path.suffix == ".exr":
                 self._write_exr(path)
-        # The first one's files, whose names are known beforehand, tell that all are there.
+        # The first one's files, whose names are known beforehand, are written last: they mean that all are there.
         for _, recorder in reversed(self.finished):
             recorder.write_part()
 

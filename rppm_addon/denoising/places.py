@@ -11,10 +11,10 @@ from pathlib import Path
 
 VARIABLE = "RPPM_OIDN"
 """The environment variable that names the library's file."""
-_NAME = "OpenImageDenoise.dll" if sys.platform == "win32" else "libOpenImageDenoise.so.2"
+LIBRARY_NAME = "OpenImageDenoise.dll" if sys.platform == "win32" else "libOpenImageDenoise.so.2"
 REMEDY = (
     "take a Blender from blender.org, which brings it, install the package pyoidn (pip install rppm-addon[denoise]), "
-    f"or name the file of {_NAME} in the add-on's preferences or the environment variable {VARIABLE}"
+    f"or name the file of {LIBRARY_NAME} in the add-on's preferences or the environment variable {VARIABLE}"
 )
 """Advice to users where no library is found."""
 
@@ -44,10 +44,10 @@ def library_places(blender_folder: Path | None = None, chosen: str = "") -> list
     """
     places = []
     folder = blender_folder or _module_folder("bpy")
-    if folder is not None and (path := _first_file([folder / part / _NAME for part in _beside_program()])):
+    if folder is not None and (path := _first_file([folder / part / LIBRARY_NAME for part in _beside_program()])):
         places.append(LibraryPlace(Source.BLENDER, path))
     wheel = _module_folder("pyoidn")
-    if wheel is not None and (path := _first_file([wheel / "oidn" / part / _NAME for part in ("lib", "bin")])):
+    if wheel is not None and (path := _first_file([wheel / "oidn" / part / LIBRARY_NAME for part in ("lib", "bin")])):
         places.append(LibraryPlace(Source.WHEEL, path))
     if chosen := chosen or os.environ.get(VARIABLE, ""):
         places.append(LibraryPlace(Source.PATH, Path(chosen)))

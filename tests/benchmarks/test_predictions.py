@@ -65,10 +65,7 @@ def test_programs_count_what_they_ask(tmp_path, monkeypatch):
     recorder = Recorder(context)
     items = np.zeros(100, np.dtype([("place", "f4", 3), ("next", "u4")]))
     items["place"], items["next"] = 3.0, np.arange(100)[::-1]
-    buffers = {
-        "Items": context.moderngl.buffer(items.tobytes()),
-        "Results": context.moderngl.buffer(reserve=404),
-    }
+    buffers = {"Items": context.moderngl.buffer(items.tobytes()), "Results": context.moderngl.buffer(reserve=404)}
     with recorder.recording():
         program = ProgramLibrary(context).compute("shader.comp")
         for _ in range(2):

@@ -15,20 +15,9 @@ pytest.importorskip("flip_evaluator", reason="it is of the bench extra")
 
 @pytest.mark.long
 def test_a_scene_is_measured(tmp_path):
-    command = [
-        sys.executable,
-        "-m",
-        "benchmarks.viewport",
-        "--scenes",
-        "cube",
-        "--size",
-        "32x18",
-        "--seconds",
-        "0.2,0.4",
-    ]
-    done = subprocess.run(
-        [*command, "--reference", "0.5", "--save", str(tmp_path)], capture_output=True, text=True, timeout=300, cwd=ROOT
-    )
+    options = f"--scenes cube --size 32x18 --seconds 0.2,0.4 --reference 0.5 --save {tmp_path}"
+    command = [sys.executable, "-m", "benchmarks.viewport", *options.split()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=ROOT)
     assert done.returncode == 0, done.stderr
     (scene,) = json.loads((tmp_path / "figures.json").read_text())["scenes"]
     assert scene["scene"] == "cube" and "| cube | 0.2 |" in done.stdout and (tmp_path / "sheet.png").exists()

@@ -7,6 +7,7 @@ import logging
 import os
 import subprocess
 import sys
+import time
 from unittest import mock
 
 import pytest
@@ -30,11 +31,7 @@ def rppm_here(*arguments):
     root, output, errors = logging.getLogger(), io.StringIO(), io.StringIO()
     handlers, level = root.handlers[:], root.level
     try:
-        with (
-            mock.patch.dict(os.environ),
-            contextlib.redirect_stdout(output),
-            contextlib.redirect_stderr(errors),
-        ):
+        with mock.patch.dict(os.environ), contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
             status = cli.main([str(argument) for argument in arguments])
     except SystemExit as end:  # of what argparse refuses
         status = end.code
@@ -42,6 +39,27 @@ def rppm_here(*arguments):
         root.handlers[:] = handlers
         root.setLevel(level)
     return status, output.getvalue(), errors.getvalue()
+
+
+def succeed(run, *arguments, **options):
+    """Run the program by ``rppm`` or ``rppm_here``, which must succeed: standard output, standard error."""
+    status, output, errors = run(*arguments, **options)
+    assert status == 0, errors
+    return output, errors
+
+
+def interrupt(process, number, is_ready):
+    """Send the program a signal once something is there, and wait for its end: standard error."""
+    give_up = time.monotonic() + 90.0
+    while not is_ready() and process.poll() is None and time.monotonic() < give_up:
+        time.sleep(0.01)
+    process.send_signal(number)
+    try:
+        _, errors = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert "Traceback" not in errors
+    return errors
 
 
 @pytest.fixture
@@ -68,11 +86,15 @@ def saved_scene(tmp_path):
     return path
 
 
-_MAKE_BLEND = """
+_IN_BLENDER = """
 import sys
 import bpy
 import rppm_addon
 rppm_addon.register()
+{}
+rppm_addon.unregister()
+"""
+_MAKE_BLEND = """
 bpy.ops.wm.read_factory_settings(use_empty=True)
 scene = bpy.context.scene
 bpy.ops.mesh.primitive_plane_add(size=18, location=(-9, 0, 0))
@@ -97,8 +119,13 @@ scene.rppm.samples, scene.rppm.photons = 3, 1024
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[1])
 scene.camera = None
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[2])
-rppm_addon.unregister()
 """
+
+
+def run_in_blender(code, *arguments):
+    """Run code in a process with Blender's module and RPPM registered there."""
+    command = [sys.executable, "-c", _IN_BLENDER.format(code), *map(str, arguments)]
+    subprocess.run(command, check=True, timeout=120, capture_output=True)
 
 
 @pytest.fixture(scope="session")
@@ -108,5 +135,5 @@ def blend_files(tmp_path_factory):
     pytest.importorskip("bpy", reason="the bpy module is not installed")
     folder = tmp_path_factory.mktemp("blend")
     paths = folder / "floor.blend", folder / "no_camera.blend"
-    subprocess.run([sys.executable, "-c", _MAKE_BLEND, *map(str, paths)], check=True, timeout=120, capture_output=True)
+    run_in_blender(_MAKE_BLEND, *paths)
     return paths

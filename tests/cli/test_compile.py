@@ -6,13 +6,13 @@ import re
 
 from support.floor import floor_scene
 
-from rppm_addon.commands.compiling import _small
+from cli.conftest import succeed
+from rppm_addon.commands.compiling import small_scene
 from rppm_addon.scene import Camera
 
 
 def test_programs_are_counted(rppm, saved_scene):
-    status, output, errors = rppm("compile", saved_scene, timeout=400)
-    assert status == 0, errors
+    output, errors = succeed(rppm, "compile", saved_scene, timeout=400)
     count = int(re.match(r"(\d+) programs ready for .+ in [\d.]+ s", output)[1])
     assert count > 20
     shown = [(int(number), int(known)) for number, known in re.findall(r"Compiling (\d+) of (\d+)", errors)]
@@ -23,9 +23,9 @@ def test_a_scene_is_made_small_in_its_proportions():
     scene = floor_scene()
     scene.camera = dataclasses.replace(scene.camera, width=1920, height=1080)
     scene.settings = dataclasses.replace(scene.settings, photons=1 << 20, iterations=1000, time_limit=5.0)
-    small = _small(scene)
+    small = small_scene(scene)
     assert isinstance(small.camera, Camera) and small.camera.resolution == (64, 36)
     assert (small.settings.photons, small.settings.iterations, small.settings.time_limit) == (1024, 2, 0.0)
     assert (scene.camera.width, scene.settings.photons) == (1920, 1 << 20)
     scene.camera = dataclasses.replace(scene.camera, width=7, height=3)
-    assert _small(scene).camera.resolution == (7, 3)
+    assert small_scene(scene).camera.resolution == (7, 3)

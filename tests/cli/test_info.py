@@ -7,16 +7,15 @@ import pytest
 
 from rppm_addon.gl.context.context import device_information
 
-from .conftest import rppm_here
+from .conftest import rppm_here, succeed
 
 
 def test_the_memory_of_a_saved_scene(tmp_path, saved_scene):
     report = tmp_path / "new" / "info.json"
-    status, output, errors = rppm_here(
-        "info", "--scene", saved_scene, "--resolution", "40x30", "--json", report,
+    output, _ = succeed(
+        rppm_here, "info", "--scene", saved_scene, "--resolution", "40x30", "--json", report,
         "--set", "rppm.photons=2000", "--set", "rppm.max_photon_bounces=2",
     )  # fmt: skip
-    assert status == 0, errors
     told = json.loads(report.read_text())
     assert told["device"]["name"] in output
     (used,) = (device for device in told["device"]["devices"] if device["number"] == told["device"]["number"])
@@ -35,8 +34,7 @@ def test_the_memory_of_a_saved_scene(tmp_path, saved_scene):
 
 
 def test_the_memory_of_a_blend_file(tmp_path, rppm, blend_files):
-    status, output, errors = rppm("info", "--scene", blend_files[0], "--json", tmp_path / "info.json")
-    assert status == 0, errors
+    output, _ = succeed(rppm, "info", "--scene", blend_files[0], "--json", tmp_path / "info.json")
     memory = json.loads((tmp_path / "info.json").read_text())["memory"]
     assert (memory["pixels"], memory["photons"]) == (16 * 12, 1024)
     assert "32 R + 64 M L" in output
@@ -49,11 +47,12 @@ def test_options_of_a_scene_need_one():
 
 
 def test_the_device_alone_as_json(tmp_path):
-    status, output, errors = rppm_here("info", "--json", tmp_path / "info.json")
-    assert status == 0, errors
+    output, _ = succeed(rppm_here, "info", "--json", tmp_path / "info.json")
     told = json.loads((tmp_path / "info.json").read_text())
     assert set(told) == {"blender", "device", "denoiser"} and told["device"]["limits"]
     assert f"Denoise  {told['denoiser']}\n" in output
+    for name in ("Device ", "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", "Missing "):
+        assert name in output
 
 
 @pytest.mark.parametrize("lacking", ["MESA_GL_VERSION_OVERRIDE=4.2", "MESA_EXTENSION_OVERRIDE=-GL_ARB_compute_shader"])

@@ -9,14 +9,13 @@ import PIL.Image
 from rppm_addon.commands.inspection import false_colors
 from rppm_addon.pictures import read_exr
 
-from .conftest import rppm_here
+from .conftest import rppm_here, succeed
 
 
 def test_a_saved_scene_is_inspected(tmp_path, saved_scene):
     png, exr, report = tmp_path / "new" / "cost.png", tmp_path / "cost.exr", tmp_path / "cost.json"
     outputs = ("-o", png, "-o", exr, "--json", report)
-    status, output, errors = rppm_here("inspect", saved_scene, *outputs, "--quantity", "list")
-    assert status == 0, errors
+    output, _ = succeed(rppm_here, "inspect", saved_scene, *outputs, "--quantity", "list")
     picture = read_exr(exr)
     listed = picture.layer("List")
     inside = np.indices(listed.shape)[1] < 7  # the floor fills the left

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import psutil
 import pytest
-from cli.conftest import blend_files, rppm, rppm_here, saved_scene, start_rppm  # noqa: F401 (fixtures)
+from cli.conftest import blend_files, rppm, rppm_here, saved_scene, start_rppm, succeed  # noqa: F401 (fixtures)
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMEOUT_SECONDS = 60.0
@@ -47,13 +47,12 @@ def _children_with(process, *words, recursive):
 
 
 @contextlib.contextmanager
-def dask(folder, *arguments):
-    """The dask program, which finds the RPPM of a folder; ends with the context."""
-    command = [sys.executable, "-m", "dask", *arguments]
-    environment = os.environ | {"PYTHONPATH": str(folder)}
+def started(words, folder, **variables):
+    """A Python module as a program in a folder; ends with the context."""
+    command, environment = [sys.executable, "-m", *words], os.environ | variables
     with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.DEVNULL) as process:
         try:
-            yield
+            yield process
         finally:
             process.terminate()
             try:

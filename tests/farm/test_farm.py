@@ -16,7 +16,7 @@ from rppm_addon.commands.picture_files import is_whole
 from rppm_addon.pictures import read_exr
 from rppm_addon.session.checkpoints.checkpoint_file import read_summary
 
-from .conftest import ROOT, dask, renders_below, rppm_here, start_rppm, wait_for, workers_of
+from .conftest import ROOT, renders_below, rppm_here, start_rppm, started, succeed, wait_for, workers_of
 
 
 def farm(blend, folder, *options):
@@ -50,8 +50,7 @@ def test_a_killed_worker_costs_no_frame(tmp_path, rppm, blend_files):
     assert left_over(farmed) == []
     wait_for("the lost worker's render to end", lambda: not render.is_running())
 
-    status, _, errors = rppm("render", blend_files[0], "--frame", 1, "--samples", 6, "-o", single)
-    assert status == 0, errors
+    succeed(rppm, "render", blend_files[0], "--frame", 1, "--samples", 6, "-o", single)
     assert np.array_equal(read_exr(farmed / "0001.exr").combined, read_exr(single).combined)
 
 
@@ -68,8 +67,7 @@ def test_a_killed_farm_goes_on_where_it_was(tmp_path, rppm, blend_files):
     damaged.write_bytes(damaged.read_bytes()[:-50])
     del finished[damaged]
 
-    status, output, errors = rppm(*farm(blend_files[0], tmp_path))
-    assert status == 0, errors
+    output, _ = succeed(rppm, *farm(blend_files[0], tmp_path))
     assert f"{len(finished)} of 4 frames are there and whole" in output
     assert output.count(" s on ") == 4 - len(finished)
     assert len(pictures(tmp_path)) == 4
@@ -141,11 +139,9 @@ def test_wrong_calls_are_one_line(tmp_path, arguments, words):
 @pytest.mark.long
 def test_a_still_in_parts_is_the_still(tmp_path, rppm, saved_scene):
     whole, merged = tmp_path / "whole.exr", tmp_path / "merged.exr"
-    status, _, errors = rppm_here("render", saved_scene, "-o", whole, "--samples", 40)
-    assert status == 0, errors
+    succeed(rppm_here, "render", saved_scene, "-o", whole, "--samples", 40)
     still = ("farm", saved_scene, "--samples", 40, "--parts", 3, "-o", merged, "-o", tmp_path / "merged.png")
-    status, output, errors = rppm(*still, "--workers", 2)
-    assert status == 0, errors
+    output, _ = succeed(rppm, *still, "--workers", 2)
     assert output.count(" s on ") == 4  # three parts and the merge
     single, farmed = read_exr(whole), read_exr(merged)
     assert farmed.metadata["iterations"] == "40"
@@ -179,11 +175,9 @@ def test_an_interrupted_part_goes_on_from_its_checkpoint(tmp_path, rppm, saved_s
     begun = read_summary(folder / "samples_0_1200.checkpoint.exr").iteration
     assert 0 < begun < 1200
 
-    status, output, errors = rppm(*still)
-    assert status == 0, errors
+    output, _ = succeed(rppm, *still)
     assert output.count(" s on ") == 2
-    status, _, errors = rppm("render", saved_scene, "-o", whole, "--samples", 1200)
-    assert status == 0, errors
+    succeed(rppm, "render", saved_scene, "-o", whole, "--samples", 1200)
     np.testing.assert_allclose(read_exr(merged).combined, read_exr(whole).combined, rtol=1e-6, atol=1e-7)
 
 
@@ -229,12 +223,12 @@ def test_workers_of_a_scheduler_need_the_same_rppm(tmp_path, blend_files):
     scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
     scheduler += ["--scheduler-file", str(tmp_path / "scheduler.json")]
     with contextlib.ExitStack() as stack:
-        stack.enter_context(dask(other, *scheduler))
+        stack.enter_context(started(["dask", *scheduler], other, PYTHONPATH=str(other)))
         wait_for("the scheduler", (tmp_path / "scheduler.json").exists)
         address = json.loads((tmp_path / "scheduler.json").read_text())["address"]
         worker = ("worker", address, "--nthreads", "1", "--nworkers", "1", "--no-dashboard", "--name")
-        stack.enter_context(dask(ROOT, *worker, "same"))
-        stack.enter_context(dask(other, *worker, "other"))
+        for name, folder in (("same", ROOT), ("other", other)):
+            stack.enter_context(started(["dask", *worker, name], folder, PYTHONPATH=str(folder)))
         with distributed.Client(address) as client:
             wait_for("both workers", lambda: len(client.scheduler_info()["workers"]) == 2)
         farm = ("farm", blend_files[0], "--frames", "1..2", "--scheduler", address)

@@ -3,12 +3,10 @@
 
 import contextlib
 import json
-import os
 import re
 import shlex
 import socket
 import subprocess
-import sys
 
 import distributed
 import psutil
@@ -17,7 +15,7 @@ from distributed.security import Security
 
 from rppm_addon.commands.farm.cluster import is_open
 
-from .conftest import ROOT, wait_for
+from .conftest import ROOT, started, wait_for
 
 PAGE = (ROOT / "docs/farm.md").read_text(encoding="utf-8")
 SECTION = PAGE[PAGE.index("### Workers on other machines") : PAGE.index("## Farm managers")]
@@ -37,21 +35,6 @@ def listening(process):
             connections = one.net_connections("inet") if hasattr(one, "net_connections") else one.connections("inet")
             found |= {entry.laddr.ip for entry in connections if entry.status == psutil.CONN_LISTEN}
     return found
-
-
-@contextlib.contextmanager
-def started(words, folder):
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "DASK_CONFIG": str(folder / "dask")}
-    command = [sys.executable, "-m", *words]
-    with subprocess.Popen(command, cwd=folder, env=environment, stderr=subprocess.DEVNULL) as process:
-        try:
-            yield process
-        finally:
-            process.terminate()
-            try:
-                process.wait(30)
-            except subprocess.TimeoutExpired:
-                process.kill()
 
 
 def test_what_the_page_says_listens_at_one_address():
@@ -88,12 +71,14 @@ def test_the_recipe_for_tls(tmp_path):
 
     (scheduler,), (worker,) = commands("dask scheduler"), commands("dask worker")
     file = tmp_path / "scheduler.json"
-    with started([*here(scheduler), "--port", "0", "--scheduler-file", str(file)], tmp_path) as process:
+    variables = {"PYTHONPATH": str(ROOT), "DASK_CONFIG": str(tmp_path / "dask")}
+    command = [*here(scheduler), "--port", "0", "--scheduler-file", str(file)]
+    with started(command, tmp_path, **variables) as process:
         wait_for("the scheduler", lambda: file.exists() and file.read_text().endswith("}"))
         address = json.loads(file.read_text())["address"]
         assert address.startswith("tls://127.0.0.1:")
         words = [address if word.startswith("tls://") else word for word in here(worker)]
-        with started(words, tmp_path) as other:
+        with started(words, tmp_path, **variables) as other:
             key, certificate = str(tmp_path / "farm.key"), str(tmp_path / "farm.crt")
             security = Security(
                 tls_ca_file=certificate, tls_client_cert=certificate, tls_client_key=key, require_encryption=True

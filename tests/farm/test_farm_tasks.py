@@ -174,7 +174,7 @@ def test_the_ledger_never_mixes_pictures_of_two_jobs(tmp_path, change, words):
 def test_pictures_of_unknown_origin_are_left_alone(tmp_path):
     task = Task(("render",), (tmp_path / "1.exr",))
     write_picture(task.outputs[0])
-    with pytest.raises(FarmError, match="does not tell"):
+    with pytest.raises(FarmError, match="does not record"):
         Ledger(tmp_path / "#.exr").open(JOB, [task], overwrite=False)
     assert is_whole(task.outputs[0])
 

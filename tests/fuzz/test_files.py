@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Saved scenes and checkpoints that are damaged, forged, or of another mind."""
 
-import hashlib
 import io
 import json
 import zipfile
@@ -11,14 +10,13 @@ import numpy as np
 import OpenEXR
 import pytest
 from hypothesis import given
+from support.checkpoints import signed, unsigned, write_part
 from support.full_scene import full_scene
-from unit.session.checkpoints import write_part
 
 from fuzz.counting import fuzzed, may_refuse
 from fuzz.values import NUMBERS, changed_documents, damaged_bytes
 from rppm_addon.scene import load_scene, save_scene
 from rppm_addon.scene.errors import CheckpointError, SceneError
-from rppm_addon.session.checkpoints import checkpoint_file
 from rppm_addon.session.checkpoints.checkpoint_file import read_checkpoint
 
 DTYPES = ("<f4", "<f8", "<i4", "<i8", "|u1", "<u2", "|b1", "<f2")
@@ -122,13 +120,7 @@ def test_forged_scenes(scene_file, folder, data):
 @pytest.fixture(scope="session")
 def checkpoint(folder):
     """A checkpoint's bytes without its digest."""
-    data = write_part(folder / "good.exr", 0, 5).read_bytes()
-    return data[: -checkpoint_file._TRAILER]
-
-
-def signed(data):
-    """With the digest that makes it whole."""
-    return data + checkpoint_file._MARK + hashlib.sha256(data).digest()
+    return unsigned(write_part(folder / "good.exr", 0, 5).read_bytes())
 
 
 def try_checkpoint(path, way):

@@ -17,16 +17,10 @@ from fuzz.values import INTEGERS, NUMBERS, TEXTS, VALUES, as_json, changed_docum
 from rppm_addon.commands.farm.tasks import Task
 from rppm_addon.scene.errors import SettingsError
 from rppm_addon.session.render.results import PhotonStatistics, Progress, RenderStatistics
+from rppm_addon.session.transport import protocol
 from rppm_addon.session.transport.arrays import pack, unpack
 from rppm_addon.session.transport.frames import FrameReader, FrameWriter
-from rppm_addon.session.transport.protocol import (
-    FROM_CHILD,
-    TO_CHILD,
-    ProtocolError,
-    check_message,
-    frame_message,
-    read_message,
-)
+from rppm_addon.session.transport.protocol import ProtocolError
 from rppm_addon.session.transport.received import received
 from rppm_addon.session.transport.sessions import SessionStatus
 
@@ -66,25 +60,25 @@ def test_layouts(shared, layout, where, data):
 @fuzzed
 @given(data=st.data())
 def test_pipes(data):
-    stream = b"".join(frame_message("status", session=1, status={"iteration": place}) for place in range(3))
+    stream = b"".join(protocol.frame_message("status", session=1, status={"iteration": place}) for place in range(3))
     pipe = io.BytesIO(data.draw(damaged_bytes(stream)))
     with may_refuse("pipes", ProtocolError):
-        while (message := read_message(pipe)) is not None:
-            check_message(message, FROM_CHILD)
+        while (message := protocol.read_message(pipe)) is not None:
+            protocol.check_message(message, protocol.FROM_CHILD)
 
 
 @fuzzed
 @given(data=st.data())
 def test_messages(data):
-    table = data.draw(st.sampled_from([TO_CHILD, FROM_CHILD]))
+    table = data.draw(st.sampled_from([protocol.TO_CHILD, protocol.FROM_CHILD]))
     kind = data.draw(st.sampled_from(sorted(table)))
     fields = table[kind]
     message = {name: (types if isinstance(types, type) else types[0])() for name, types in fields.items()}
     message = data.draw(changed_documents({"kind": kind, **message}))
     with may_refuse("messages", ProtocolError):
         text = json.dumps(message).encode()
-        read = read_message(io.BytesIO(len(text).to_bytes(4, "little") + text))
-        check_message(read, table)
+        read = protocol.read_message(io.BytesIO(len(text).to_bytes(4, "little") + text))
+        protocol.check_message(read, table)
         assert read.keys() - {"kind"} == table[read["kind"]].keys()
 
 
@@ -117,8 +111,8 @@ def test_records(data):
 @pytest.fixture(scope="module")
 def frames():
     writer = FrameWriter()
-    reader = FrameReader(**writer.reserve(64))
-    yield reader, writer.write(1, np.ones((4, 8, 4), np.float32)), writer._slots.block.name
+    slots = writer.reserve(64)
+    yield FrameReader(**slots), writer.write(1, np.ones((4, 8, 4), np.float32)), slots["block"]
     writer.release()
 
 

@@ -132,11 +132,4 @@ def read_png(path: Path) -> np.ndarray:
         return np.asarray(picture.convert("RGB"))
 
 
-__all__ = [
-    "BlenderWindow",
-    "MachineError",
-    "StepError",
-    "blender_in_background",
-    "nothing_left",
-    "read_png",
-]
+__all__ = ["BlenderWindow", "MachineError", "StepError", "blender_in_background", "nothing_left", "read_png"]

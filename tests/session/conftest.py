@@ -12,7 +12,11 @@ from pathlib import Path
 import pytest
 from support.floor import floor_scene
 
+from rppm_addon.gl.context.context import Context
+from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.session.client.client import RendererProcess, Timeouts
+from rppm_addon.session.render.renderer import Renderer
+from rppm_addon.session.transport.sessions import SessionKind
 
 FAKE = Path(__file__).with_name("fake_renderer.py")
 
@@ -60,10 +64,57 @@ def children():
 
 def scene_of(iterations=1000, size=16, **changes):
     """The floor, to be rendered so often."""
-    scene = floor_scene()
+    scene = with_settings(floor_scene(), iterations=iterations)
     scene.camera = dataclasses.replace(scene.camera, width=size, height=size)
-    scene.settings = dataclasses.replace(scene.settings, iterations=iterations)
     return dataclasses.replace(scene, **changes)
+
+
+def with_settings(scene, **values):
+    """The scene with other settings; it shares the rest."""
+    return dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, **values))
+
+
+def open_viewport(process, scene=None, generation=1):
+    """A viewport's session that shows a scene, or else the floor."""
+    session = process.open(SessionKind.VIEWPORT)
+    session.show(scene or scene_of(), generation, False)
+    return session
+
+
+def settled_picture(session, generation=1):
+    """The picture of a generation when there is nothing left to do for it."""
+    wait_until(lambda: session.status.generation == generation and session.status.settled)
+    return session.newest().combined
+
+
+def rendered(scene):
+    """The frame of a scene by a renderer of its own in this process."""
+    with Renderer() as renderer:
+        return renderer.render(scene).frame
+
+
+def run_to_the_end(work):
+    """Run the slices of a viewport, render or preparation in this process until it has nothing to do."""
+    deadline = time.monotonic() + 180.0
+    while work.busy:
+        work.run_slice()
+        assert time.monotonic() < deadline, "it did not end in time"
+
+
+@pytest.fixture(scope="module")
+def device():
+    """A context, and a library of programs."""
+    context = Context.create()
+    library = ProgramLibrary(context)
+    yield context, library
+    library.release()
+    context.release()
+
+
+@pytest.fixture
+def process(start):
+    """A renderer process that is real."""
+    return start()
 
 
 @pytest.fixture

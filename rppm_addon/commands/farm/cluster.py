@@ -36,7 +36,7 @@ class Cluster:
     def __post_init__(self) -> None:
         self._identity = identity()
         self._known: dict[str, str] = {}
-        """Identity of the RPPM that each worker runs, by the worker's address, or why the worker cannot tell it."""
+        """Identity of the RPPM that each worker runs, by the worker's address, or why the worker has none."""
 
     def workers(self) -> set[str]:
         """Addresses of the workers that are there now and may be given work."""
@@ -122,7 +122,7 @@ def is_open(address: str) -> bool:
 
 
 def _log_level(debug: bool) -> int:
-    """Have dask log what ``debug`` wants, and return that level: what it has to say to users, the farm tells."""
+    """Have dask log what ``debug`` wants, and return that level: the farm reports to users itself."""
     level = logging.DEBUG if debug else logging.CRITICAL
     logging.getLogger("distributed").setLevel(level)
     logging.getLogger("distributed.client").setLevel(level)

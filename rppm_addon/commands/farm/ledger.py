@@ -83,6 +83,6 @@ class Ledger:
     def _strangers(self, before: Mapping[str, object] | None, job: Mapping[str, object]) -> str:
         """Say what is wrong with the pictures that are there."""
         if before is None:
-            return f"pictures of these names are there, and {self._file} does not tell what they were made with"
+            return f"pictures of these names are there, and {self._file} does not record what they were made with"
         changed = [words for name, words in _CHANGES.items() if before.get(name) != job[name]]
         return f"pictures of these names are there, made with {' and '.join(changed)}"

@@ -27,7 +27,7 @@ from .tasks import Task
 from .watchdog import TIMEOUT_SECONDS
 
 TOPIC = "rppm-farm"
-"""Topic of the events that tell how far a task is: task, where, fraction, frames."""
+"""Topic of the events that report the progress of a task: task, where, fraction, frames."""
 _POLL_SECONDS = 0.2
 _LAST_LINES = 20
 _FLAGS = 0
@@ -68,15 +68,15 @@ def perform(task: Task, folder: Path) -> Outcome:
     if task.done:
         return Outcome(label, 0.0, False)
 
-    def tell(fraction: float) -> None:
+    def report(fraction: float) -> None:
         frames = len(task.frames) or 1
         worker.log_event(TOPIC, {"task": task.name, "where": label, "fraction": fraction, "frames": frames})
 
-    tell(0.0)
+    report(0.0)
     start = time.perf_counter()
     with _counted():
         try:
-            failure = _make_pictures(task.rest, folder, lambda: _wanted(worker), tell)
+            failure = _make_pictures(task.rest, folder, lambda: _wanted(worker), report)
         except OSError as error:
             failure = f"{error}; all machines must see the pictures at the same path and may write there"
     if failure:
@@ -101,10 +101,10 @@ def _counted() -> Iterator[None]:
             _at_work -= 1
 
 
-def _make_pictures(task: Task, folder: Path, wanted: Callable[[], bool], tell: Callable[[float], None]) -> str:
+def _make_pictures(task: Task, folder: Path, wanted: Callable[[], bool], report: Callable[[float], None]) -> str:
     """Why not all pictures are there; empty when they are. Raises OSError."""
     with tempfile.TemporaryDirectory(prefix=ATTEMPT, dir=folder, ignore_cleanup_errors=True) as attempt:
-        with _Program(task.command([Path(attempt) / path.name for path in task.outputs]), tell) as program:
+        with _Program(task.command([Path(attempt) / path.name for path in task.outputs]), report) as program:
             while program.running:
                 if not wanted():
                     return "stopped"

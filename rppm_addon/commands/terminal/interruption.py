@@ -15,7 +15,7 @@ INTERRUPTED = 130
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name))
 """SIGBREAK is Windows' only one that a program can be sent by others, as render managers do."""
 GRACE_SECONDS = 1.0
-"""For a program that has nothing to keep, or was told twice, to end by itself."""
+"""For a program that has nothing to keep, or was interrupted twice, to end by itself."""
 
 
 class Interruption:
@@ -56,14 +56,14 @@ class Interruption:
         self.asked, self.status = True, 128 + number
 
     def _listen(self) -> None:
-        told = 0
+        count = 0
         with self._heard:
             while number := self._heard.recv(1):
                 if number[0] not in self._previous:
                     continue
-                told += 1
-                if told > 1 or not self.has_work():
-                    self._end_soon(number[0], told > 1)
+                count += 1
+                if count > 1 or not self.has_work():
+                    self._end_soon(number[0], count > 1)
 
     def _end_soon(self, number: int, insisted: bool) -> None:
         """End the process unless it has ended by itself, or come to something that is worth keeping."""

@@ -76,10 +76,6 @@ class DeviceInformation:
     warnings: list[str] = field(default_factory=list)
     """Why it is not the device that was wished for."""
 
-    def __post_init__(self) -> None:
-        """From another process come devices as plain values."""
-        self.devices = [Device(**device) if isinstance(device, dict) else device for device in self.devices]
-
     @property
     def kind(self) -> str:
         """A DeviceKind."""

@@ -25,7 +25,7 @@ Constants("GuideCells", NO_CELL=0xFFFFFFFF, CELL_CONTRIBUTED=1 << 31)
 """The latter marks cells of photons that have been counted."""
 Record("LearnParameters", count="uint")
 
-_DEFENSIVE = 0.25
+DEFENSIVE_FRACTION = 0.25
 """Fraction of the photons that leave as if there were no guide: none has more than four times its plain flux."""
 
 _PRIOR_PHOTONS = 4.0
@@ -34,7 +34,7 @@ _PRIOR_PHOTONS = 4.0
 _DOUBTED_PHOTONS = 32.0
 """Photons of a light after which, if none contributed, it is as likely that none ever will."""
 
-_FINEST = {
+FINEST_CELLS = {
     LightShape.POINT: (1, 1, 128, 128),
     LightShape.SPOT: (1, 1, 128, 128),
     LightShape.SUN: (128, 128, 1, 1),
@@ -48,7 +48,7 @@ _FINEST = {
 
 def cells_of(kind: int, photons: int) -> tuple[int, ...]:
     """Cells along each number, powers of two: at most one for each photon."""
-    cells = list(_FINEST[LightShape(kind)])
+    cells = list(FINEST_CELLS[LightShape(kind)])
     while np.prod(cells) > max(photons, 1):
         most = max(cells)
         cells[3 - cells[::-1].index(most)] //= 2
@@ -78,7 +78,7 @@ def probabilities(estimate: np.ndarray) -> np.ndarray:
     """Return the probabilities of choosing cells, (n,) summing to 1: the root of the probability to contribute gives
     the sum of photons the least variance, and a fraction is defensive."""
     weight = np.sqrt(estimate)
-    return (1.0 - _DEFENSIVE) * weight / weight.sum() + _DEFENSIVE / weight.size
+    return (1.0 - DEFENSIVE_FRACTION) * weight / weight.sum() + DEFENSIVE_FRACTION / weight.size
 
 
 def starts(probability: np.ndarray) -> np.ndarray:

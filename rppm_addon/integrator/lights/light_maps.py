@@ -66,7 +66,7 @@ class LightMaps(BufferSet):
         shapes = {index: _shape(with_nodes[index], varies) for index, varies in varying.items() if varies}
         sizes = {index: _size(with_nodes[index], shape, images) for index, shape in shapes.items()}
         widest = min(int(self._context.limits["GL_MAX_TEXTURE_SIZE"]), 2 * (_WIDEST_MAP + 2))
-        places, (width, height) = _packed(sizes, widest)
+        places, (width, height) = packed_places(sizes, widest)
         texels = np.zeros((height, width, 4), np.float16)
         self.nodes = {}
         for index, light in with_nodes.items():
@@ -78,9 +78,9 @@ class LightMaps(BufferSet):
             largest = float(np.abs(pixels).max(initial=0.0))
             falls = (1.0 + nodes.smoothing) * np.ones(3)
             nodes.scale = falls * largest
-            nodes.mean = falls * _mean(pixels, light, shapes[index])
+            nodes.mean = falls * mean_of(pixels, light, shapes[index])
             normalized = pixels / largest if largest > 0.0 else pixels
-            texels[y : y + map_height + 2, x : x + map_width + 2, :3] = _bordered(normalized, shapes[index])
+            texels[y : y + map_height + 2, x : x + map_width + 2, :3] = bordered(normalized, shapes[index])
             nodes.place = (x + 1) / width, (y + 1) / height, map_width / width, map_height / height
         if self._texture is not None:
             self.disown(self._texture)
@@ -129,7 +129,7 @@ def _size(light: Light, shape: MapShape, images: list[Image]) -> tuple[int, int]
     return width, width // 2 if spherical else width
 
 
-def _packed(
+def packed_places(
     sizes: dict[int, tuple[int, int]], widest: int
 ) -> tuple[dict[int, tuple[int, int, int, int]], tuple[int, int]]:
     """(x, y, width, height) of maps side by side in rows, and the width and height of all, borders included. Maps
@@ -149,7 +149,7 @@ def _packed(
         sizes = {index: (max(across // 2, 1), max(up // 2, 1)) for index, (across, up) in sizes.items()}
 
 
-def _bordered(pixels: np.ndarray, shape: MapShape) -> np.ndarray:
+def bordered(pixels: np.ndarray, shape: MapShape) -> np.ndarray:
     """A map with a texel more on every side."""
     around: Literal["wrap", "edge"] = "wrap" if shape in (MapShape.NORMALS, MapShape.DIRECTIONS) else "edge"
     return np.pad(np.pad(pixels, ((0, 0), (1, 1), (0, 0)), around), ((1, 1), (0, 0), (0, 0)), "edge")
@@ -178,7 +178,7 @@ def _asked(
     return materials.evaluate(require(light.graph), *size, ray_length=distance, light_surface=light_surface)
 
 
-def _mean(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:
+def mean_of(pixels: np.ndarray, light: Light, shape: MapShape) -> np.ndarray:
     """(3,) of a map over what the light is seen by."""
     height, width = pixels.shape[:2]
     y, x = ((np.arange(n) + 0.5) / n for n in (height, width))
@@ -207,7 +207,7 @@ def _even(light: Light, varies: LightVariation, shape: MapShape | None, material
     extent = _extent(light) if asked is MapShape.CONE else 0.0
 
     def mean(distance: float) -> np.ndarray:
-        return _mean(_asked(light, asked, _COARSE, distance, materials), light, asked)
+        return mean_of(_asked(light, asked, _COARSE, distance, materials), light, asked)
 
     near_values = mean(1.0)
     found = LightNodes(near_values, near_values, shape=shape, extent=extent)

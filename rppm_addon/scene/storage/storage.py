@@ -77,7 +77,7 @@ def load_scene(path: str | Path) -> Scene:
 
 
 _NO_HANDLES = (errno.EMFILE, errno.ENFILE)
-_MIN_LIMIT = 1 << 29
+MIN_LIMIT = 1 << 29
 _MAX_STRETCH = 100
 """Bytes that are taken out of an archive in any case, and for each byte of the file: real scenes, whose numbers all
 differ, stay far below."""
@@ -89,7 +89,7 @@ def _read(path: str | Path) -> tuple[Any, dict[str, np.ndarray]]:
     size = Path(path).stat().st_size
     with zipfile.ZipFile(path) as archive:
         entries = {entry.filename.removesuffix(".npy"): entry for entry in archive.infolist()}
-        limit, total = max(_MIN_LIMIT, _MAX_STRETCH * size), sum(entry.file_size for entry in entries.values())
+        limit, total = max(MIN_LIMIT, _MAX_STRETCH * size), sum(entry.file_size for entry in entries.values())
         if total > limit:
             raise SceneError(
                 f"{path} would take {bytes_text(total)} of memory for {bytes_text(size)} on the disk, which is more "

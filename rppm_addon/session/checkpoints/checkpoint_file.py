@@ -43,11 +43,13 @@ _FILM, _GUIDE, _REST = "film", "guide", "rest"
 _COUNTS = ("Pass Counts.X", "Pass Counts.Y")
 _HALF = ("Half.R", "Half.G", "Half.B")
 _BLOCK = 1 << 20
+_MAX_REASON = 200
+"""Characters of an error of OpenEXR or JSON that a message quotes."""
 
 
 @dataclass
 class StillRender:
-    """Which still it is, as far as plain values tell."""
+    """Identity of a still in plain values, by which renders of other stills are refused."""
 
     scene: dict[str, str]
     """Digests by member of the scene (scene_digests)."""
@@ -251,11 +253,8 @@ def _opened(path: str | Path, header_only: bool) -> Iterator[tuple["OpenEXR.File
     except CheckpointError:
         raise
     except Exception as error:  # whatever OpenEXR, json and numpy say to what is damaged or forged
-        told = " ".join(str(error).split())[:_LONGEST_TOLD]
-        raise CheckpointError(f"{path} cannot be read as a checkpoint ({told}); begin anew without it") from error
-
-
-_LONGEST_TOLD = 200
+        reason = " ".join(str(error).split())[:_MAX_REASON]
+        raise CheckpointError(f"{path} cannot be read as a checkpoint ({reason}); begin anew without it") from error
 
 
 def _check(summary: CheckpointSummary) -> None:

@@ -165,7 +165,7 @@ def _free_name(path: Path) -> Path:
 
 
 def still_render(scene: Scene, source: Mapping[str, object]) -> "StillRender":
-    """Return the description that tells the render of a scene from other renders."""
+    """Return the description that distinguishes the render of a scene from other renders."""
     from .checkpoint_file import StillRender
 
     return StillRender(

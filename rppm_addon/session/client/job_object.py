@@ -2,7 +2,7 @@
 """Windows ends the renderer's process with the one that started it, as Linux does by a signal (bootstrap.py).
 
 The end of the pipe says so as well, but is not seen while the driver computes and holds the interpreter. A job object
-that is told so ends its processes when its last handle is closed, which the system does for whoever dies
+with this limit ends its processes when its last handle is closed, which the system does for whoever dies
 (learn.microsoft.com, "Job Objects", JOB_OBJECT_LIMIT_KILL_ON_JOB_CLOSE).
 """
 
@@ -61,7 +61,7 @@ def end_with_this_process(process: "subprocess.Popen[bytes]") -> None:
 
 
 def _kernel() -> "ctypes.CDLL":
-    """The functions of kernel32, which tell errors by ctypes.get_last_error."""
+    """The functions of kernel32, whose errors ctypes.get_last_error returns."""
     if sys.platform != "win32":
         raise OSError("there are job objects on Windows alone")
     kernel = ctypes.WinDLL("kernel32", use_last_error=True)

@@ -107,16 +107,16 @@ def _attend(process: RendererProcess, session: RenderSession, scene: Scene, job:
             if job.on_progress(content["progress"]):
                 session.request_picture()
         elif event == "picture":
-            job.on_frame(content["progress"], _frame(content, scene))
+            job.on_frame(content["progress"], received_frame(content, scene))
         elif event == "snapshot":
-            job.on_snapshot(content["seconds"], _frame(content, scene))
+            job.on_snapshot(content["seconds"], received_frame(content, scene))
         elif event == "result":
-            return RenderResult(_frame(content, scene), content["statistics"], content["stopped"])
+            return RenderResult(received_frame(content, scene), content["statistics"], content["stopped"])
         elif event == "failed":
-            raise _error(process, content["error"], content["text"])
+            raise render_error(process, content["error"], content["text"])
 
 
-def _frame(content: Mapping, scene: Scene) -> Frame:
+def received_frame(content: Mapping, scene: Scene) -> Frame:
     """Return the frame that a message brings. Raises ProtocolError unless arrays, names and the scene fit."""
     width, height = scene.camera.resolution
     try:
@@ -132,7 +132,8 @@ def _frame(content: Mapping, scene: Scene) -> Frame:
     return frame
 
 
-def _error(process: RendererProcess, name: str, text: str) -> errors.RppmError:
+def render_error(process: RendererProcess, name: str, text: str) -> errors.RppmError:
+    """Return the error of a render that failed in the process with an error of this name and text."""
     kind = getattr(errors, name, None)
     if kind is not None:
         return kind(text)

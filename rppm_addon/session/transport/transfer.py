@@ -167,7 +167,7 @@ class _NewMembers:
         self.used.update(ids)
         new = {key: member for key, member in zip(ids, members, strict=True) if key not in known}
         if field in _IN_COLUMNS:
-            self._tell_in_columns(field, new)
+            self._add_columns(field, new)
         else:
             for key, member in new.items():
                 if self._parts[-1].is_full:
@@ -178,7 +178,7 @@ class _NewMembers:
                 part.add(field, [self._give(key, member, large), document])
         return [known[key][0] for key in ids]
 
-    def _tell_in_columns(self, field: str, new: dict[int, object]) -> None:
+    def _add_columns(self, field: str, new: dict[int, object]) -> None:
         for start in range(0, len(new), _PART_COLUMNS):
             chosen = dict(itertools.islice(new.items(), start, start + _PART_COLUMNS))
             if self._parts[-1].is_full:

@@ -3,21 +3,13 @@
 
 import bpy
 import numpy as np
-from window_steps import override
+from window_steps import counter, override
 
 bakes = {"complete": 0, "cancelled": 0}
 SIZE = 32
 
-
-def _count(name: str):
-    def handler(*_: object) -> None:
-        bakes[name] += 1
-
-    return bpy.app.handlers.persistent(handler)
-
-
-bpy.app.handlers.object_bake_complete.append(_count("complete"))
-bpy.app.handlers.object_bake_cancel.append(_count("cancelled"))
+bpy.app.handlers.object_bake_complete.append(counter(bakes, "complete"))
+bpy.app.handlers.object_bake_cancel.append(counter(bakes, "cancelled"))
 
 
 def bake(at_once: bool = False) -> str:

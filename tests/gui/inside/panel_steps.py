@@ -89,10 +89,5 @@ def readings() -> dict[str, object]:
     reports = importlib.import_module(f"{_addon()}.rppm_addon.blender.reports").reports_of(scene.session_uid)
     found = reports.viewport
     return (
-        {}
-        if found is None
-        else {
-            "iterations": found.progress.iteration,
-            "watts": found.photon_statistics.source_watts,
-        }
+        {} if found is None else {"iterations": found.progress.iteration, "watts": found.photon_statistics.source_watts}
     )

@@ -8,16 +8,18 @@ import bpy
 renders = {"started": 0, "completed": 0, "cancelled": 0}
 
 
-def _count(name: str):
+def counter(counts: dict[str, int], name: str):
+    """A handler that counts its calls, also after another file is opened."""
+
     def handler(*_: object) -> None:
-        renders[name] += 1
+        counts[name] += 1
 
     return bpy.app.handlers.persistent(handler)
 
 
-bpy.app.handlers.render_init.append(_count("started"))
-bpy.app.handlers.render_complete.append(_count("completed"))
-bpy.app.handlers.render_cancel.append(_count("cancelled"))
+bpy.app.handlers.render_init.append(counter(renders, "started"))
+bpy.app.handlers.render_complete.append(counter(renders, "completed"))
+bpy.app.handlers.render_cancel.append(counter(renders, "cancelled"))
 
 
 def ready() -> bool:

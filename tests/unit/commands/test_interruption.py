@@ -9,8 +9,9 @@ import pytest
 
 PROGRAM = """
 import ctypes, sys
-from rppm_addon.commands.terminal.interruption import Interruption
-with Interruption() as interruption:
+from rppm_addon.commands.terminal import interruption as module
+module.GRACE_SECONDS = 0.2
+with module.Interruption() as interruption:
     interruption.has_work = lambda: {has_work}
     print("entered", flush=True)
     ctypes.CDLL(None).{call}
@@ -19,7 +20,7 @@ with Interruption() as interruption:
 
 
 def run(call, has_work):
-    """Exit status, output and errors of a program that is told to end amid a call that does not hear of it."""
+    """Exit status, output and errors of a program that is to end during a call that ignores signals."""
     arguments = [sys.executable, "-c", PROGRAM.format(has_work=has_work, call=call)]
     with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         try:
@@ -40,4 +41,4 @@ def test_a_call_that_hears_nothing_is_ended_where_nothing_is_lost():
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_what_is_worth_keeping_is_waited_for():
-    assert run("system(b'exec sleep 1.5')", has_work=True)[:2] == (0, "asked\n")
+    assert run("system(b'exec sleep 0.5')", has_work=True)[:2] == (0, "asked\n")

@@ -125,29 +125,53 @@ def test_files_that_are_no_such_library(tmp_path, place):
         OpenImageDenoise(other)
 
 
-def test_another_version_is_refused(place, monkeypatch):
-    loaded = library_module._loaded
+class FakeLibrary:
+    """Stands in for the file of a version, and notes the quality that is asked for."""
 
-    def of_version_3(path):
-        calls = loaded(path)
-        return calls | {"oidnGetDeviceInt": lambda device, name: 30102}
+    def __init__(self, version):
+        self.functions, self.qualities = {}, []
+        self.results = {"oidnGetDeviceInt": lambda *_: version, "oidnSetFilterInt": self.set_quality}
 
-    monkeypatch.setattr(library_module, "_loaded", of_version_3)
+    def set_quality(self, filter_, name, value):
+        self.qualities.append(value)
+
+    def __getattr__(self, name):
+        answer = self.results.get(name, lambda *_: 0)
+        return self.functions.setdefault(name, lambda *given: answer(*given))
+
+
+@pytest.fixture
+def open_version(monkeypatch, tmp_path):
+    """open_version(number): a library of that version, and what stands in for its file."""
+    (tmp_path / "library.so").touch()
+
+    def open_version(number):
+        fake = FakeLibrary(number)
+        monkeypatch.setattr(ctypes, "CDLL", lambda path: fake)
+        return OpenImageDenoise(tmp_path / "library.so"), fake
+
+    return open_version
+
+
+def test_another_version_is_refused(open_version):
     with pytest.raises(DenoiserError, match="is version 3.1.2 of Open Image Denoise; take one of version 2"):
-        OpenImageDenoise(place.path)
+        open_version(30102)
 
 
-def test_fast_is_balanced_before_version_2_3(library, monkeypatch):
-    monkeypatch.setattr(library, "_number", 20201)
-    assert library.version == "2.2.1"
-    assert library._quality(DenoisingQuality.FAST) == library._quality(DenoisingQuality.BALANCED)
+@pytest.mark.parametrize(("number", "version", "is_balanced"), [(20201, "2.2.1", True), (20303, "2.3.3", False)])
+def test_fast_is_balanced_before_version_2_3(open_version, number, version, is_balanced):
+    library, fake = open_version(number)
+    assert library.version == version
+    for quality in (DenoisingQuality.FAST, DenoisingQuality.BALANCED):
+        library.filter({"color": np.ones((2, 2, 3))}, quality)
+    assert (fake.qualities[0] == fake.qualities[1]) == is_balanced
 
 
 def test_the_order_of_the_places(tmp_path, monkeypatch):
     """Blender's, the wheel's, the chosen one; what is not there is left out, but for what the user names."""
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
     monkeypatch.delenv(places_module.VARIABLE, raising=False)
-    name = places_module._NAME
+    name = places_module.LIBRARY_NAME
     blender, wheel = tmp_path / "blender-5" / "lib", tmp_path / "pyoidn" / "oidn" / "lib"
     for folder in (blender, wheel):
         folder.mkdir(parents=True)
@@ -170,12 +194,12 @@ def test_the_order_of_the_places(tmp_path, monkeypatch):
 def test_a_distribution_has_it_among_its_libraries(tmp_path):
     (tmp_path / "bin").mkdir()
     (tmp_path / "lib64").mkdir()
-    library = tmp_path / "lib64" / places_module._NAME
+    library = tmp_path / "lib64" / places_module.LIBRARY_NAME
     library.touch()
     assert library_places(tmp_path / "bin")[0].path.samefile(library)
 
 
-def test_the_next_place_is_tried_and_the_remedy_told(tmp_path, place):
+def test_the_next_place_is_tried_and_the_remedy_is_named(tmp_path, place):
     broken = LibraryPlace(Source.PATH, tmp_path / "none.so")
     denoiser = Denoiser([broken, place])
     assert denoiser.description.startswith(f"Open Image Denoise {denoiser.open().version} of {place.source.value}")
@@ -192,7 +216,9 @@ def test_threads_are_those_of_the_process(monkeypatch):
     assert library_module.usable_cores() == 3
 
 
-def test_signatures_are_complete():
+def test_signatures_are_complete(open_version):
     """A function without argument types would cut pointers to 32 bits."""
-    for result, *arguments in library_module._FUNCTIONS.values():
-        assert result in (None, ctypes.c_void_p, ctypes.c_int) and arguments
+    _, fake = open_version(20303)
+    assert len(fake.functions) > 10
+    for function in fake.functions.values():
+        assert function.restype in (None, ctypes.c_void_p, ctypes.c_int) and function.argtypes

@@ -27,6 +27,11 @@ def test_an_entry_is_its_keys_alone_and_whole():
         assert unpack_entry(KEY, bytes(spoiled)) is None
 
 
+def integer(reference):
+    """The C integer that a function of GL is to set."""
+    return ctypes.cast(reference, ctypes.POINTER(ctypes.c_int)).contents
+
+
 class Driver:
     """A driver whose programs are numbers, and their binaries these numbers as bytes."""
 
@@ -39,10 +44,10 @@ class Driver:
         return getattr(self, name)
 
     def glGetProgramiv(self, program, parameter, value):
-        value._obj.value = 1 if parameter == 0x8B82 else 4
+        integer(value).value = 1 if parameter == 0x8B82 else 4
 
     def glGetProgramBinary(self, program, length, written, kind, data):
-        written._obj.value, kind._obj.value = 4, 3
+        integer(written).value, integer(kind).value = 4, 3
         ctypes.memmove(data, program.to_bytes(4, "little"), 4)
 
     def glProgramBinary(self, program, kind, data, length):

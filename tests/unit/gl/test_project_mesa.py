@@ -127,16 +127,16 @@ def test_a_process_takes_the_chosen_mesa():
         "from rppm_addon.gl.context.context import device_information as d; print(d().driver_folder); print(d().driver)"
     )
 
-    def told(**environment):
+    def device_lines(**environment):
         command = [sys.executable, "-c", program]
         run = subprocess.run(
             command, cwd=ROOT, env=os.environ | environment, capture_output=True, text=True, check=True, timeout=60
         )
         return run.stdout.splitlines()
 
-    assert told(RPPM_MESA="system")[0] == ""
+    assert device_lines(RPPM_MESA="system")[0] == ""
     chosen = project_mesa.choose_folder()
-    folder, driver = told()
+    folder, driver = device_lines()
     assert folder == str(chosen or "")
     if chosen:
         (gallium,) = chosen.glob("usr/lib/*/libgallium-*.so")
@@ -148,39 +148,52 @@ def test_a_process_takes_the_chosen_mesa():
 
 @pytest.fixture
 def unpacking(monkeypatch, tmp_path):
-    """The program of set-up, with an apt that gives what ``replies`` say by the first argument that they know."""
+    """The program of set-up, with a system whose apt has ``targets`` and whose libraries lack what is ``missing``."""
     specification = importlib.util.spec_from_file_location("unpack_mesa", ROOT / ".ci" / "unpack_mesa.py")
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     module.calls = []
-    module.missing = ""
+    module.missing, module.failure = "", ""
     module.targets = "file:/mirror/ bookworm main\nfile:/other/ bookworm-updates main\nfile:/tools/ stable main\n"
 
-    def run(command, folder=None, check=True):
+    def run(command, cwd=None, **_):
         module.calls.append(command)
+        output = failure = ""
         if "indextargets" in command:
-            return module.targets
-        if "depends" in command:
-            return "mesa-libgallium\n  Depends: libc6\n  Depends: libdrm2\n  Depends: libdrm-amdgpu1\n"
-        if "download" in command:
-            (folder / "mesa.deb").touch()
+            output = module.targets
+        elif "depends" in command:
+            output = "mesa-libgallium\n  Depends: libc6\n  Depends: libdrm2\n  Depends: libdrm-amdgpu1\n"
+        elif "download" in command:
+            (cwd / "mesa.deb").touch()
         elif command[0] == "dpkg-deb":
             make_libraries(Path(command[-1]))
         elif command[0] == "ldd":
-            return f"\tlibc.so.6 => /lib/libc.so.6 (0x1)\n\tlibdrm.so.2 => not found\n{module.missing}"
-        return ""
+            output = f"\tlibc.so.6 => /lib/libc.so.6 (0x1)\n\tlibdrm.so.2 => not found\n{module.missing}"
+        elif "info" in command:
+            failure = module.failure
+        return subprocess.CompletedProcess(command, int(bool(failure)), output, failure)
 
-    monkeypatch.setattr(module, "_run", run)
+    monkeypatch.setattr(subprocess, "run", run)
     monkeypatch.setattr(module, "has_gpu", lambda: False)
     monkeypatch.setattr(module, "system_release", lambda: "debian 12")
     monkeypatch.delenv("RPPM_MESA", raising=False)
     return module
 
 
-def test_set_up_unpacks_once(unpacking, tmp_path, devices, capsys):
+@pytest.fixture
+def set_up(unpacking, tmp_path, capsys):
+    """A function that runs set-up, which never fails; returns what it prints."""
+
+    def set_up():
+        assert unpacking.main(tmp_path / ".mesa") == 0
+        return capsys.readouterr().out
+
+    return set_up
+
+
+def test_set_up_unpacks_once(unpacking, set_up, tmp_path, devices):
     folder = tmp_path / ".mesa"
-    assert unpacking.main(folder) == 0
-    assert "Mesa 25.0.7 from bookworm-backports" in capsys.readouterr().out
+    assert "Mesa 25.0.7 from bookworm-backports" in set_up()
     assert project_mesa.choose_folder({}, devices, folder) == folder
     (download,) = (command for command in unpacking.calls if "download" in command)
     fetched = {f"{name}/bookworm-backports" for name in ("libdrm2", "libdrm-amdgpu1", "libgbm1", "libegl-mesa0")}
@@ -188,61 +201,46 @@ def test_set_up_unpacks_once(unpacking, tmp_path, devices, capsys):
     (tried,) = (command for command in unpacking.calls if "info" in command)
     assert tried[:2] == ["env", f"RPPM_MESA={tmp_path / '.mesa.new'}"]
     count = len(unpacking.calls)
-    assert unpacking.main(folder) == 0 and len(unpacking.calls) == count and capsys.readouterr().out == ""
+    assert set_up() == "" and len(unpacking.calls) == count
     assert {path.name for path in tmp_path.iterdir()} == {".mesa", "dev"}
 
 
-def test_set_up_names_a_version_that_was_not_tested(unpacking, tmp_path, capsys):
-    assert unpacking.main(tmp_path / ".mesa") == 0
-    assert f"tested with Mesa {unpacking.TESTED_VERSION}; RPPM_MESA=system" in capsys.readouterr().out
-    unpacking.TESTED_VERSION = "25.0.7"
-    assert unpacking.main(tmp_path / ".other") == 0
-    assert "tested with" not in capsys.readouterr().out
+@pytest.mark.parametrize("tested", ["25.0.7", "25.0.7-2~bpo12+1"])
+def test_set_up_names_a_version_that_was_not_tested(unpacking, set_up, tested):
+    unpacking.TESTED_VERSION = tested
+    assert (f"tested with Mesa {tested}; RPPM_MESA=system" in set_up()) == (tested != "25.0.7")
 
 
-def test_set_up_leaves_out_a_driver_that_does_not_start(unpacking, tmp_path, monkeypatch, capsys):
-    known = unpacking._run
-
-    def run(command, folder=None, check=True):
-        if "info" in command:
-            raise unpacking.UnavailableError("no OpenGL context")
-        return known(command, folder, check)
-
-    monkeypatch.setattr(unpacking, "_run", run)
-    assert unpacking.main(tmp_path / ".mesa") == 0
-    assert "will do (no OpenGL context)" in capsys.readouterr().out
-    assert {path.name for path in tmp_path.iterdir()} == {".mesa.tried"}
-
-
-def test_set_up_says_why_not_and_waits_a_day(unpacking, tmp_path, capsys):
-    folder = tmp_path / ".mesa"
-    unpacking.targets = "file:/mirror/ trixie main\n"
-    assert unpacking.main(folder) == 0
-    told = capsys.readouterr().out
-    assert "no bookworm main" in told and told.count("\n") == 1 and not folder.exists()
-    assert unpacking.main(folder) == 0 and capsys.readouterr().out == ""
-    tried = tmp_path / ".mesa.tried"
-    os.utime(tried, (0, tried.stat().st_mtime - unpacking.TRY_AGAIN_SECONDS))
-    unpacking.targets = "file:/mirror/ bookworm main\n"
-    assert unpacking.main(folder) == 0 and folder.is_dir() and not tried.exists()
-
-
-def test_set_up_keeps_nothing_that_would_not_load(unpacking, tmp_path, capsys):
-    unpacking.missing = "\tlibLLVM-15.so.1 => not found\n"
-    assert unpacking.main(tmp_path / ".mesa") == 0
-    assert "needs libLLVM-15.so.1" in capsys.readouterr().out
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("failure", "no OpenGL context", "will do (no OpenGL context)"),
+        ("missing", "\tlibLLVM-15.so.1 => not found\n", "needs libLLVM-15.so.1"),
+    ],
+)
+def test_set_up_keeps_no_driver_that_would_not_start(unpacking, set_up, tmp_path, name, value, words):
+    setattr(unpacking, name, value)
+    assert words in set_up()
     assert [path.name for path in tmp_path.iterdir()] == [".mesa.tried"]
 
 
-def test_set_up_leaves_other_machines_alone(unpacking, tmp_path, monkeypatch, capsys):
-    folder = tmp_path / ".mesa"
+def test_set_up_says_why_not_and_waits_a_day(unpacking, set_up, tmp_path):
+    unpacking.targets = "file:/mirror/ trixie main\n"
+    found = set_up()
+    assert "no bookworm main" in found and found.count("\n") == 1 and not (tmp_path / ".mesa").exists()
+    assert set_up() == ""
+    tried = tmp_path / ".mesa.tried"
+    os.utime(tried, (0, tried.stat().st_mtime - unpacking.TRY_AGAIN_SECONDS))
+    unpacking.targets = "file:/mirror/ bookworm main\n"
+    assert set_up() and (tmp_path / ".mesa").is_dir() and not tried.exists()
+
+
+def test_set_up_leaves_other_machines_alone(unpacking, set_up, monkeypatch):
     monkeypatch.setenv("RPPM_MESA", "system")
-    assert unpacking.main(folder) == 0
+    assert set_up() == ""
     monkeypatch.delenv("RPPM_MESA")
     monkeypatch.setattr(unpacking, "has_gpu", lambda: True)
-    assert unpacking.main(folder) == 0
-    assert unpacking.calls == [] and capsys.readouterr().out == ""
+    assert set_up() == ""
     monkeypatch.setattr(unpacking, "has_gpu", lambda: False)
     monkeypatch.setattr(unpacking, "system_release", lambda: "debian 13")
-    assert unpacking.main(folder) == 0
-    assert unpacking.calls == [] and "another system" in capsys.readouterr().out
+    assert "another system" in set_up() and unpacking.calls == []

@@ -30,10 +30,17 @@ class Device:
         self.information = dataclasses.make_dataclass("Information", ["name"])("Device")
 
 
-@pytest.mark.parametrize("width, height", [(1, 1 << 20), (16384, 16384), (17000, 2), (2, 17000), (1 << 20, 3)])
-def test_bands_can_be_drawn_and_cover_all_rows(width, height):
+@pytest.mark.parametrize(
+    "width, height",
+    [
+        (1, 1), (128, 128), (1920, 1080), (7680, 4320), (300000, 3), (3, 300000),
+        (1, 1 << 20), (16384, 16384), (17000, 2), (2, 17000), (1 << 20, 3),
+    ],
+)  # fmt: skip
+def test_bands_can_be_drawn_and_cover_every_row_once(width, height):
     bands = bands_of(width, height)
-    assert sum(band.rows for band in bands) == height
+    rows = [row for band in bands for row in range(band.first_row, band.first_row + band.rows)]
+    assert rows == list(range(height))
     assert max(band.rows for band in bands) <= MAX_RASTER_PIXELS
     assert all(band.rows == 1 or band.pixel_count <= MAXIMUM_BAND_PIXELS for band in bands)
 

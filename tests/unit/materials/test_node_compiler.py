@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 from support.every_node import programs
+from support.graphs import chain, surface_graph
 
-from rppm_addon.materials.compiler import compiler
 from rppm_addon.materials.compiler.compiled_graph import MAX_NODE_RAYS, GraphError, NodeRayCounts, Resource
 from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.scene import AovOutput, Link, NodeGraph
@@ -50,8 +50,7 @@ def test_constants_come_in_the_order_of_use():
 
 def test_numbers_are_finite_in_single_precision():
     for value in (float("nan"), float("inf"), -float("inf"), 1e300, -1e300, (float("nan"), 1e300, 0.0)):
-        graph = NodeGraph()
-        graph.surface = graph.add("emission", "emission", color=value, strength=value)
+        graph = surface_graph("emission", color=value, strength=value)
         assert np.isfinite(np.array(compile_graph(graph).constants, np.float32)).all()
 
 
@@ -155,51 +154,41 @@ def test_a_normal_of_the_whole_surface_shares_nodes_with_it():
     assert len(declared) == len(set(declared))
 
 
-def bad_graphs():
+def with_surface(kind, output, name="", **inputs):
     graph = NodeGraph()
-    graph.surface = graph.add("bsdf_of_tomorrow", "bsdf", name="New")
-    yield "unknown kind", graph, "New.*unknown kind"
-    graph = NodeGraph()
-    graph.surface = graph.add("bsdf_diffuse", "bsdf", name="Lost", color=Link(7, "color"))
-    yield "link to nowhere", graph, "Lost"
-    graph = NodeGraph()
-    graph.surface = Link(3, "bsdf")
-    yield "surface nowhere", graph, "node 3 of 0"
-    graph = NodeGraph()
-    graph.surface = graph.add("bsdf_diffuse", "bsdf", name="Loop", color=Link(0, "bsdf"))
-    yield "link to itself", graph, "Loop"
-    graph = NodeGraph()
-    first = graph.add("math", "value", name="First", value=Link(1, "value"))
-    graph.add("math", "value", name="Second", value=first)
-    graph.surface = graph.add("emission", "emission", color=first)
-    yield "circle", graph, "First"
-    graph = NodeGraph()
-    shader = graph.add("bsdf_diffuse", "bsdf", name="Shader")
-    graph.surface = graph.add("emission", "emission", color=shader)
-    yield "shader as a color", graph, "Shader"
-    graph = NodeGraph()
-    graph.surface = graph.add("math", "value", name="Number")
-    yield "number as a surface", graph, "Number.*no shader"
-    graph = NodeGraph()
-    value = graph.add("tex_noise", "smell", name="Noise")
-    graph.surface = graph.add("emission", "emission", color=value)
-    yield "unknown output", graph, "Noise.*smell"
-    graph = NodeGraph()
-    value = graph.add("math", "value", name="Sum", options={"operation": "INTEGRATE"})
-    graph.surface = graph.add("emission", "emission", color=value)
-    yield "unknown option", graph, "Sum.*INTEGRATE"
-    graph = NodeGraph()
-    graph.surface = graph.add("emission", "emission", name="Odd", color=(1.0, 2.0))
-    yield "two numbers", graph, "Odd.*color"
-    graph = NodeGraph()
-    graph.surface = graph.add("emission", "emission", name="Odd", color="red")
-    yield "a text", graph, "Odd"
+    graph.surface = graph.add(kind, output, name=name, **inputs)
+    return graph
 
 
-BAD = list(bad_graphs())
+def glowing(kind, output, name, **options):
+    """A surface whose emission has the color of a node."""
+    graph = NodeGraph()
+    graph.surface = graph.add("emission", "emission", color=graph.add(kind, output, name=name, **options))
+    return graph
 
 
-@pytest.mark.parametrize(("graph", "message"), [case[1:] for case in BAD], ids=[case[0] for case in BAD])
+def circle():
+    graph = glowing("math", "value", "First", value=Link(2, "value"))
+    graph.add("math", "value", name="Second", value=Link(0, "value"))
+    return graph
+
+
+BAD = {
+    "unknown kind": (with_surface("bsdf_of_tomorrow", "bsdf", "New"), "New.*unknown kind"),
+    "link to nowhere": (with_surface("bsdf_diffuse", "bsdf", "Lost", color=Link(7, "color")), "Lost"),
+    "surface nowhere": (NodeGraph(surface=Link(3, "bsdf")), "node 3 of 0"),
+    "link to itself": (with_surface("bsdf_diffuse", "bsdf", "Loop", color=Link(0, "bsdf")), "Loop"),
+    "circle": (circle(), "First"),
+    "shader as a color": (glowing("bsdf_diffuse", "bsdf", "Shader"), "Shader"),
+    "number as a surface": (with_surface("math", "value", "Number"), "Number.*no shader"),
+    "unknown output": (glowing("tex_noise", "smell", "Noise"), "Noise.*smell"),
+    "unknown option": (glowing("math", "value", "Sum", options={"operation": "INTEGRATE"}), "Sum.*INTEGRATE"),
+    "two numbers": (with_surface("emission", "emission", "Odd", color=(1.0, 2.0)), "Odd.*color"),
+    "a text": (with_surface("emission", "emission", "Odd", color="red"), "Odd"),
+}
+
+
+@pytest.mark.parametrize(("graph", "message"), BAD.values(), ids=BAD)
 def test_bad_graphs_are_refused_by_name(graph, message):
     with pytest.raises(GraphError, match=message):
         compile_graph(graph)
@@ -207,23 +196,17 @@ def test_bad_graphs_are_refused_by_name(graph, message):
 
 def test_a_chain_of_five_thousand_nodes():
     graph = NodeGraph()
-    value = graph.add("tex_coord", "uv")
-    for _ in range(5000):
-        value = graph.add("math", "value", value=value)
-    graph.surface = graph.add("emission", "emission", color=value)
+    graph.surface = graph.add("emission", "emission", color=chain(graph, 5000))
     text = compile_graph(graph).text
     assert text.count("node_math_add(") == 5000 and len(text) < 200 * 5000
 
 
 def test_more_nodes_than_drivers_compile_are_refused(monkeypatch):
     """Only nodes that are in use count: others cost nothing."""
-    monkeypatch.setattr(compiler, "MAX_CALLS", 50)
+    monkeypatch.setattr("rppm_addon.materials.compiler.compiler.MAX_CALLS", 50)
     graph = NodeGraph()
     for count in (30, 60):
-        value = graph.add("tex_coord", "uv")
-        for _ in range(count):
-            value = graph.add("math", "value", value=value)
-        surface = graph.add("emission", "emission", color=value)
+        surface = graph.add("emission", "emission", color=chain(graph, count))
         graph.surface = graph.surface or surface
     compile_graph(graph)
     graph.surface = surface
@@ -256,12 +239,9 @@ def test_aov_outputs_that_are_malformed_are_refused():
 
 def occluded(*normals: str) -> NodeGraph:
     """Ambient Occlusion about a chain of normals."""
-    graph = NodeGraph()
-    normal = None
+    graph, inputs = NodeGraph(), {}
     for kind in normals:
-        inputs = {} if normal is None else {"normal": normal}
-        normal = graph.add(kind, "normal", **inputs)
-    inputs = {} if normal is None else {"normal": normal}
+        inputs = {"normal": graph.add(kind, "normal", **inputs)}
     shade = graph.add("ambient_occlusion", "color", samples=5.0, **inputs)
     graph.surface = graph.add("emission", "emission", color=shade)
     return graph

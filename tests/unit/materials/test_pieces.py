@@ -3,6 +3,8 @@
 
 import re
 
+from support.graphs import chain
+
 from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.compiler.pieces import PIECE, in_pieces
 from rppm_addon.scene import NodeGraph
@@ -31,22 +33,14 @@ def test_long_ones_declare_first_and_do_the_same_in_the_same_order():
 
 def test_constants_are_read_in_one_place_of_a_piece():
     count = 3 * PIECE
-    lines = [
-        line
-        for number in range(count)
-        for line in (
-            f"float n{number};",
-            f"node(constant_float(first + {4 * number}u), constant_vec3(first + {4 * number + 1}u), n{number});",
-        )
-    ]
+    lines = []
+    for number in range(count):
+        values = f"constant_float(first + {4 * number}u), constant_vec3(first + {4 * number + 1}u)"
+        lines += [f"float n{number};", f"node({values}, n{number});"]
     text = "\n".join(in_pieces(lines))
-    assert (
-        f"float held[{4 * PIECE}];" in text and text.count("constant_float(first") == 3 and "constant_vec3" not in text
-    )
-    assert (
-        f"k < (first != 0xFFFFFFFFu ? {4 * PIECE}u : 0u)" in text
-        and f"constant_float(first + {4 * PIECE}u + k)" in text
-    )
+    assert f"float held[{4 * PIECE}];" in text and text.count("constant_float(first") == 3
+    assert "constant_vec3" not in text and f"k < (first != 0xFFFFFFFFu ? {4 * PIECE}u : 0u)" in text
+    assert f"constant_float(first + {4 * PIECE}u + k)" in text
     assert f"node(held[4], vec3(held[5], held[6], held[7]), n{PIECE + 1});" in text
     far = ["float m;", "node(constant_float(first + 100000u), m);", *lines]
     assert "constant_float(first + 100000u), m)" in "\n".join(in_pieces(far))  # for which no array would do
@@ -54,8 +48,5 @@ def test_constants_are_read_in_one_place_of_a_piece():
 
 def test_graphs_of_usual_length_are_as_they_were():
     graph = NodeGraph()
-    value = graph.add("tex_coord", "uv")
-    for _ in range(30):
-        value = graph.add("math", "value", value=value)
-    graph.surface = graph.add("emission", "emission", color=value)
+    graph.surface = graph.add("emission", "emission", color=chain(graph, 30))
     assert "once" not in compile_graph(graph).text

@@ -14,7 +14,7 @@ from rppm_addon.scene.sky import Sky
 SCATTERING = ["SINGLE_SCATTERING", "MULTIPLE_SCATTERING"]
 
 
-def _directions(count: int = 500) -> np.ndarray:
+def _directions(count: int = 100) -> np.ndarray:
     directions = np.random.default_rng(7).normal(size=(count, 3))
     return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 

@@ -3,9 +3,9 @@
 
 import numpy as np
 import pytest
+from support.graphs import surface_graph
 
 from rppm_addon.materials.compiler.compiler import compile_graph
-from rppm_addon.materials.nodes import KINDS
 from rppm_addon.materials.placeholders.plain_surface import plain_surface
 from rppm_addon.materials.placeholders.stand_in import stand_in_graph
 from rppm_addon.materials.traits.emitted import Emits, emits
@@ -27,29 +27,25 @@ def painted(start: str = "tex_coord", **mapping: object) -> NodeGraph:
     return graph
 
 
-def simple(kind: str, **inputs: object) -> NodeGraph:
-    graph = NodeGraph()
-    graph.surface = graph.add(kind, next(iter(KINDS[kind].outputs)), **inputs)
-    return graph
-
-
-def empty() -> NodeGraph:
-    return NodeGraph()
-
-
 def test_all_stand_ins_share_a_program():
-    graphs = [painted(), painted("new_geometry"), simple("bsdf_glass"), simple("emission", strength=3.0), empty()]
+    graphs = [
+        painted(),
+        painted("new_geometry"),
+        surface_graph("bsdf_glass"),
+        surface_graph("emission", strength=3.0),
+        NodeGraph(),
+    ]
     assert len({compile_graph(stand_in_graph(graph, IMAGES)).text for graph in graphs}) == 1
 
 
 @pytest.mark.parametrize(
     "graph",
     [
-        simple("bsdf_diffuse", color=RED),
-        simple("bsdf_glossy", color=RED, roughness=0.25),
-        simple("bsdf_glass", color=RED),
-        simple("bsdf_transparent"),
-        simple("bsdf_principled", base_color=RED, alpha=0.5, emission_color=RED, emission_strength=2.0),
+        surface_graph("bsdf_diffuse", color=RED),
+        surface_graph("bsdf_glossy", color=RED, roughness=0.25),
+        surface_graph("bsdf_glass", color=RED),
+        surface_graph("bsdf_transparent"),
+        surface_graph("bsdf_principled", base_color=RED, alpha=0.5, emission_color=RED, emission_strength=2.0),
     ],
 )
 def test_a_stand_in_is_as_plain_as_what_it_stands_for(graph):
@@ -79,6 +75,6 @@ def test_the_image_of_the_color_lies_where_it_lay():
     np.testing.assert_allclose(surface.inputs["color"], (2.5, 0.5, 0.5))  # times 0.25: the mean of both
 
 
-@pytest.mark.parametrize("graph", [painted("new_geometry"), painted(rotation=(0.0, 0.0, 1.0)), empty()])
+@pytest.mark.parametrize("graph", [painted("new_geometry"), painted(rotation=(0.0, 0.0, 1.0)), NodeGraph()])
 def test_images_that_lie_elsewhere_count_by_their_mean(graph):
     assert image_of(stand_in_graph(graph, IMAGES))[0] == -1

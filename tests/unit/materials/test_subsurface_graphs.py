@@ -2,6 +2,7 @@
 """Which materials send light below the surface."""
 
 import pytest
+from support.graphs import surface_graph
 
 from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.traits.subsurface import has_subsurface
@@ -16,22 +17,22 @@ def principled(varies: bool = False, thin_wall: bool = False, **inputs: object) 
     return graph
 
 
-def subsurface(used: bool = True) -> NodeGraph:
-    graph = NodeGraph()
-    scattering = graph.add("subsurface_scattering", "bssrdf")
-    graph.surface = scattering if used else graph.add("bsdf_diffuse", "bsdf")
+def unused_subsurface() -> NodeGraph:
+    graph = surface_graph("bsdf_diffuse")
+    graph.add("subsurface_scattering", "bssrdf")
     return graph
 
 
-@pytest.mark.parametrize("graph", [principled(subsurface_weight=0.1), principled(varies=True), subsurface()])
+@pytest.mark.parametrize(
+    "graph", [principled(subsurface_weight=0.1), principled(varies=True), surface_graph("subsurface_scattering")]
+)
 def test_light_goes_below(graph):
     assert has_subsurface(graph)
     assert "materials/subsurface.glsl" in compile_graph(graph).text
 
 
 @pytest.mark.parametrize(
-    "graph",
-    [NodeGraph(), principled(), principled(thin_wall=True, subsurface_weight=1.0), subsurface(used=False)],
+    "graph", [NodeGraph(), principled(), principled(thin_wall=True, subsurface_weight=1.0), unused_subsurface()]
 )
 def test_light_stays_above(graph):
     assert not has_subsurface(graph)

@@ -2,6 +2,7 @@
 """Which materials shadow rays may pass."""
 
 import pytest
+from support.graphs import surface_graph
 
 from rppm_addon.materials.traits.transparency import asks_for_shadow_rays, passes_shadow_rays
 from rppm_addon.scene.node_graphs import NodeGraph
@@ -19,8 +20,7 @@ def mixed_by_shadow_rays(shader: str) -> NodeGraph:
     ("inputs", "passes"), [({}, False), ({"alpha": 1.0}, False), ({"alpha": 0.5}, True), ({"alpha": 0.0}, True)]
 )
 def test_a_principled_surface_passes_light_by_its_alpha(inputs, passes):
-    graph = NodeGraph()
-    graph.surface = graph.add("bsdf_principled", "bsdf", **inputs)
+    graph = surface_graph("bsdf_principled", **inputs)
     assert passes_shadow_rays(graph) is passes
     assert not asks_for_shadow_rays(graph)
 

@@ -3,12 +3,12 @@
 
 import numpy as np
 import pytest
+from support.graphs import surface_graph
 
 from rppm_addon.materials import dispersion
 from rppm_addon.materials.colorimetry import COLOR_MATCHING, WAVELENGTHS
 from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.dispersion import LINE_C, LINE_D, LINE_F, index_shift
-from rppm_addon.scene import NodeGraph
 
 
 def test_the_mean_of_all_wavelengths_is_white():
@@ -43,10 +43,9 @@ def test_crown_glass_has_the_indices_of_its_maker(wavelength, index):
 
 
 def test_only_what_refracts_has_a_program_of_its_own():
-    graph = NodeGraph()
-    graph.surface = graph.add("bsdf_diffuse", "bsdf")
+    graph = surface_graph("bsdf_diffuse")
     assert compile_graph(graph, abbe_number=30.0) == compile_graph(graph)
-    graph.surface = graph.add("bsdf_glass", "bsdf")
+    graph = surface_graph("bsdf_glass")
     dispersing = compile_graph(graph, abbe_number=30.0)
     assert dispersing.text != compile_graph(graph).text
     assert dispersing.text == compile_graph(graph, abbe_number=64.0).text

@@ -110,7 +110,7 @@ def test_members_that_are_none(tmp_path, members):
 
 def test_what_would_fill_the_memory_is_not_unpacked(tmp_path, monkeypatch):
     """A thousandth of the bytes on the disk; the limit is lowered, to make the test short."""
-    monkeypatch.setattr(storage, "_MIN_LIMIT", 1 << 22)
+    monkeypatch.setattr(storage, "MIN_LIMIT", 1 << 22)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with pytest.raises(SceneError, match="would take 64.0 MiB of memory for .* KiB on the disk"):
         load_scene(archive(tmp_path / "bomb.npz", document=np.zeros(1 << 26, np.uint8)))
@@ -159,17 +159,22 @@ def test_damaged_files(tmp_path):
     assert refused > 100
 
 
-@pytest.mark.parametrize("kind", ["nothing", "folder", "pipe", "absent"])
-def test_what_is_no_file(tmp_path, kind):
+@pytest.mark.parametrize("kind", ["nothing", "text", "numbers", "folder", "pipe", "absent"])
+def test_other_files_are_refused_in_one_line(tmp_path, kind):
     path = tmp_path / "a.npz"
     if kind == "nothing":
         path.touch()
+    elif kind == "text":
+        path.write_bytes(b"not a scene")
+    elif kind == "numbers":
+        np.savez(path, x=np.zeros(3))
     elif kind == "folder":
         path.mkdir()
     elif kind == "pipe":
         os.mkfifo(path)  # who opens it waits for somebody that writes
-    with pytest.raises(SceneError, match="rppm export"):
+    with pytest.raises(SceneError, match="rppm export") as error:
         load_scene(path)
+    assert "\n" not in str(error.value)
 
 
 def test_too_few_file_handles_are_called_so(tmp_path):

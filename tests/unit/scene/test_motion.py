@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.floor import floor_scene
 
@@ -44,6 +44,7 @@ def matrix_at(time, times, *matrices):
 axes = st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda axis: np.linalg.norm(axis) > 0.1)
 
 
+@settings(deadline=None, derandomize=True)
 @given(axes, st.floats(0.01, 3.1), st.floats(0.0, 1.0), axes, st.floats(0.0, 3.1), st.booleans())
 def test_what_turns_goes_round(axis, angle, time, first_axis, first_angle, mirrored):
     start = turned(first_axis, first_angle)

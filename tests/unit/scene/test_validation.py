@@ -7,21 +7,10 @@ import numpy as np
 import pytest
 from support.full_scene import full_scene, graph_of_everything
 
-from rppm_addon.scene import (
-    AttributeDomain,
-    Link,
-    MeshAttribute,
-    NodeGraph,
-    ShaderNode,
-    Texels,
-    load_scene,
-    save_scene,
-)
+from rppm_addon.scene import AttributeDomain, Link, MeshAttribute, NodeGraph, ShaderNode, Texels, load_scene, save_scene
 from rppm_addon.scene.errors import SceneError
 from rppm_addon.scene.meshes import SMOOTH_NORMALS, Dicing, RayVisibility
-from rppm_addon.scene.storage.validation import check_record, check_scene
-from rppm_addon.session.render.results import PhotonStatistics, Progress
-from rppm_addon.session.transport.sessions import SessionStatus
+from rppm_addon.scene.storage.validation import check_scene
 
 NAN, INF = float("nan"), float("inf")
 
@@ -46,6 +35,10 @@ def texels(scene, triangle):
     width, height = scene.camera.resolution
     places = (np.zeros((height, width, count), np.float32) for count in (2, 4))
     return Texels(0, np.full((height, width), triangle, np.int32), *places)
+
+
+def smooth(domain, numbers):
+    return {SMOOTH_NORMALS: MeshAttribute(domain, np.zeros((4, numbers), np.float32))}
 
 
 BROKEN = [
@@ -88,16 +81,8 @@ BROKEN = [
     ("meshes.0.positions", lambda scene: np.zeros((3, 3), np.float32), "index 3; there are 3 vertices"),
     ("meshes.0.corner_normals", lambda scene: np.zeros((5, 3), np.float32), "of 4 vertices, 4 corners"),
     ("meshes.0.attributes.heat.values", lambda scene: np.zeros((3, 3), np.float32), "there are 4 corners"),
-    (
-        "meshes.0.attributes",
-        lambda scene: {SMOOTH_NORMALS: scene.meshes[0].attributes["heat"]},
-        "must have 4 numbers for each corner",
-    ),
-    (
-        "meshes.0.attributes",
-        lambda scene: {SMOOTH_NORMALS: MeshAttribute(AttributeDomain.POINT, np.zeros((4, 4), np.float32))},
-        "must have 4 numbers for each corner",
-    ),
+    ("meshes.0.attributes", lambda scene: smooth(AttributeDomain.CORNER, 3), "must have 4 numbers for each corner"),
+    ("meshes.0.attributes", lambda scene: smooth(AttributeDomain.POINT, 4), "must have 4 numbers for each corner"),
     ("meshes.0.dicing", lambda scene: Dicing(NAN, True, False), "dicing: edge_length is nan"),
     ("meshes.0.dicing", lambda scene: Dicing(0.0, True, False), "dicing: edge_length is 0.0; it must be 1e-06 or more"),
     ("meshes.0.dicing", lambda scene: Dicing(1.0, 1, False), "dicing: in_pixels is 1; it must be a bool"),
@@ -167,22 +152,6 @@ def test_names_do_not_reach_the_terminal_as_they_are():
     with pytest.raises(SceneError) as error:
         check_scene(scene)
     assert "\x1b" not in str(error.value) and "\n" not in str(error.value)
-
-
-@pytest.mark.parametrize(
-    ("field", "status"),
-    [
-        ("iteration", SessionStatus(progress=Progress("many", 2, 1.0, 5))),
-        ("noise", SessionStatus(progress=Progress(1, 2, 1.0, 5, noise=None))),
-        ("warnings", SessionStatus(warnings=[5])),
-        ("source_watts", SessionStatus(photon_statistics=PhotonStatistics(source_watts={"a": "b"}))),
-    ],
-)
-def test_a_status_of_the_other_process_is_held_to_its_declaration(field, status):
-    check_record(SessionStatus(), SessionStatus)
-    check_record(SessionStatus(progress=Progress(1, 2, 1.0, 5)), SessionStatus)
-    with pytest.raises(SceneError, match=field):
-        check_record(status, SessionStatus)
 
 
 def test_texels_of_a_mesh_are_let_in():

@@ -16,7 +16,7 @@ from support.floor import floor_scene
 
 from rppm_addon.cli import main
 from rppm_addon.pictures import PictureError, make_folder, read_exr, write_exr
-from rppm_addon.scene import Image, load_scene, save_scene
+from rppm_addon.scene import Image, save_scene
 from rppm_addon.scene.common import whole_files
 from rppm_addon.scene.common.whole_files import renamed_when_whole
 
@@ -38,22 +38,24 @@ def large_scene():
     return scene
 
 
-def test_a_full_disk_leaves_the_scene_of_before(tmp_path):
-    path = tmp_path / "scene.npz"
-    save_scene(floor_scene(), path)
-    before = path.read_bytes()
-    with full_disk(), pytest.raises(OSError):
-        save_scene(large_scene(), path)
-    assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
-    load_scene(path)
+def write_noise(side, path):
+    write_exr(path, np.random.default_rng(0).random((side, side, 4), np.float32))
 
 
-def test_a_full_disk_leaves_the_picture_of_before(tmp_path):
-    path = tmp_path / "picture.exr"
-    write_exr(path, np.zeros((4, 4, 4), np.float32))
+@pytest.mark.parametrize(
+    ("write", "small", "large", "error", "words"),
+    [
+        (save_scene, floor_scene(), large_scene(), OSError, None),
+        (write_noise, 4, 64, PictureError, "choose another place"),
+    ],
+    ids=["scene", "picture"],
+)
+def test_a_full_disk_leaves_the_file_of_before(tmp_path, write, small, large, error, words):
+    path = tmp_path / "file.exr"
+    write(small, path)
     before = path.read_bytes()
-    with full_disk(), pytest.raises(PictureError, match="choose another place"):
-        write_exr(path, np.random.default_rng(0).random((64, 64, 4), np.float32))
+    with full_disk(), pytest.raises(error, match=words):
+        write(large, path)
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
 
 
@@ -147,6 +149,6 @@ def test_windows_waits_for_who_has_the_file_open(tmp_path, monkeypatch):
         whole_files.replace(made, path)
     tried.clear()
     monkeypatch.setattr(whole_files.sys, "platform", "win32")
-    monkeypatch.setattr(whole_files, "_BETWEEN_TRIES_SECONDS", 0.0)
+    monkeypatch.setattr(whole_files.time, "sleep", lambda seconds: None)
     whole_files.replace(made, path)
     assert path.read_bytes() == b"new" and len(tried) == 3 and not made.exists()

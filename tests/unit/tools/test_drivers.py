@@ -46,7 +46,7 @@ def test_each_program_has_what_was_said_of_it():
     rows = [{"seconds": 1.0, "messages": [], "error": ""} for _ in programs]
     rows[3]["error"] = "0:1: wrong"
     found = {"device": "D", "version": "V", "limits": {}, "programs": rows}
-    outcome = lab._outcome(driver, programs, found, printed)
+    outcome = lab.outcome_of(driver, programs, found, printed)
     errors = [outcome.rows[program.digest].error for program in programs]
     assert errors == ["", "ERROR: unknown nir_op unpack", "the driver has made no code of it", "0:1: wrong"]
 

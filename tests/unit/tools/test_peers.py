@@ -7,18 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from benchmarks.peers import metrics
 from benchmarks.peers.description import AreaLight, Counts, Diffuse, Glass, SphereLight, SunLight, frame_of
 from benchmarks.peers.jobs import Job
 from benchmarks.peers.methods import METHODS, OWN, REFERENCES
-from benchmarks.peers.metrics import (
-    caustic_ratio,
-    convergence_rate,
-    displayed,
-    exposure_of,
-    gradients_kept,
-    mean_ratio,
-    relative_mse,
-)
 from benchmarks.peers.references import Agreement, combine
 from benchmarks.peers.report import page_text
 from benchmarks.peers.results import Curve, Point, Results, SceneResult
@@ -33,35 +25,35 @@ def gray(value, size=40):
 
 
 def test_relative_mse_of_an_even_difference():
-    assert relative_mse(gray(0.6), gray(0.5)) == pytest.approx(0.01 / (0.25 + 0.01), rel=1e-5)
+    assert metrics.relative_mse(gray(0.6), gray(0.5)) == pytest.approx(0.01 / (0.25 + 0.01), rel=1e-5)
 
 
 def test_blur_takes_gradients_and_noise_only_adds_energy():
     mask = np.ones((40, 40), bool)
     stripes = gray(0.5) + 0.2 * np.sin(np.arange(40) * 0.8)[None, :, None].astype(np.float32)
-    assert gradients_kept(stripes, stripes, mask) == pytest.approx((1.0, 1.0))
-    assert gradients_kept(0.5 + 0.6 * (stripes - 0.5), stripes, mask) == pytest.approx((0.6, 0.36), rel=1e-5)
+    assert metrics.gradients_kept(stripes, stripes, mask) == pytest.approx((1.0, 1.0))
+    assert metrics.gradients_kept(0.5 + 0.6 * (stripes - 0.5), stripes, mask) == pytest.approx((0.6, 0.36), rel=1e-5)
     noise = np.random.default_rng(2).normal(0.0, 0.1, stripes.shape[:2])
-    kept, energy = gradients_kept(stripes + noise[..., None], stripes, mask)
+    kept, energy = metrics.gradients_kept(stripes + noise[..., None], stripes, mask)
     # Of 3200 differences, each of noise 0.07, against stripes whose gradient is 0.1.
     assert kept == pytest.approx(1.0, abs=0.05) and energy > 1.3
     mask[:, 20:] = False
     half = np.where(mask[..., None], stripes, 0.5)
-    assert gradients_kept(half, stripes, mask & (np.arange(40) < 18))[0] == pytest.approx(1.0)
+    assert metrics.gradients_kept(half, stripes, mask & (np.arange(40) < 18))[0] == pytest.approx(1.0)
 
 
 def test_relative_mse_leaves_out_a_thousandth_of_the_pixels():
     picture = gray(0.5)  # 1600 pixels: round(1.6) = 2 are left out
     picture[0, :2] = 1000.0
-    assert relative_mse(picture, gray(0.5)) == 0.0
+    assert metrics.relative_mse(picture, gray(0.5)) == 0.0
     picture[1, 0] = 0.7
-    assert relative_mse(picture, gray(0.5)) == pytest.approx(0.04 / 0.26 / 1598, rel=1e-5)
+    assert metrics.relative_mse(picture, gray(0.5)) == pytest.approx(0.04 / 0.26 / 1598, rel=1e-5)
 
 
 def test_relative_mse_counts_what_is_not_finite_as_black():
     picture = gray(0.5)
     picture[0, :3] = np.nan
-    assert relative_mse(picture, gray(0.5)) == pytest.approx(0.25 / 0.26 / 1598, rel=1e-5)
+    assert metrics.relative_mse(picture, gray(0.5)) == pytest.approx(0.25 / 0.26 / 1598, rel=1e-5)
 
 
 def test_energies():
@@ -70,22 +62,22 @@ def test_energies():
     reference[10:20, 10:20] = 1.2
     half = without.copy()
     half[10:20, 10:20] = 0.7
-    assert caustic_ratio(reference, reference, without) == pytest.approx(1.0)
-    assert caustic_ratio(half, reference, without) == pytest.approx(0.5, rel=1e-5)
-    assert caustic_ratio(without, reference, without) == pytest.approx(0.0, abs=1e-6)
-    assert mean_ratio(gray(0.3), gray(0.2)) == pytest.approx(1.5, rel=1e-6)
+    assert metrics.caustic_ratio(reference, reference, without) == pytest.approx(1.0)
+    assert metrics.caustic_ratio(half, reference, without) == pytest.approx(0.5, rel=1e-5)
+    assert metrics.caustic_ratio(without, reference, without) == pytest.approx(0.0, abs=1e-6)
+    assert metrics.mean_ratio(gray(0.3), gray(0.2)) == pytest.approx(1.5, rel=1e-6)
 
 
 def test_convergence_rate():
     counts = [2, 8, 64]
-    assert convergence_rate(counts, [0.3 * count**-1.7 for count in counts]) == pytest.approx(1.7)
-    assert math.isnan(convergence_rate([8], [0.1]))
+    assert metrics.convergence_rate(counts, [0.3 * count**-1.7 for count in counts]) == pytest.approx(1.7)
+    assert math.isnan(metrics.convergence_rate([8], [0.1]))
 
 
 def test_exposure_brings_the_median_to_a_quarter():
-    exposure = exposure_of(gray(5.0))
+    exposure = metrics.exposure_of(gray(5.0))
     assert exposure == pytest.approx(0.05, rel=1e-5)
-    assert displayed(gray(5.0), exposure).max() == pytest.approx(1.055 * 0.25 ** (1 / 2.4) - 0.055, rel=1e-5)
+    assert metrics.displayed(gray(5.0), exposure).max() == pytest.approx(1.055 * 0.25 ** (1 / 2.4) - 0.055, rel=1e-5)
 
 
 def test_references_are_weighted_by_the_inverse_of_their_noise():
@@ -102,7 +94,7 @@ def test_references_are_weighted_by_the_inverse_of_their_noise():
     assert agreement.weights == pytest.approx([0.9, 0.1], abs=0.02)
     assert agreement.difference == pytest.approx(sum(agreement.noise), rel=0.1)
     assert agreement.mean_ratio == pytest.approx(1.0, abs=0.003)
-    assert relative_mse(pixels, true) == pytest.approx(agreement.floor, rel=0.1)
+    assert metrics.relative_mse(pixels, true) == pytest.approx(agreement.floor, rel=0.1)
 
 
 def curve(method, label, errors, seconds):
