@@ -24,7 +24,8 @@ from rppm_addon.blender.export import export_scene
 from rppm_addon.session.render.renderer import Renderer
 
 from .comparison import block_means
-from .scenes import camera, light, new_scene, place, render_cycles
+from .engines import render_cycles
+from .scenes import camera, light, new_scene, place
 
 COLUMNS, ROWS = 5, 4
 CELL = 32

@@ -1,32 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small Blender scenes made in Python, and how to render them with Cycles and with RPPM.
-
-Both engines get the same Blender scene: Cycles through bpy.ops.render.render, RPPM through the
-extension's exporter and a Renderer.
-"""
+"""Small Blender scenes made in Python."""
 
 import functools
 import math
-import os
-import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
-import OpenEXR
-import pytest
 from mathutils import Matrix, Vector
 
-from rppm_addon.blender.export import export_scene
-from rppm_addon.scene import Scene
-from rppm_addon.session.render.renderer import Renderer
-from rppm_addon.session.render.results import RenderStatistics
-
-from . import references
-
 RESOLUTION = 64
-FIRST_SEED = 1000
 DIFFUSE, GLOSSY, GLASS = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlass"
 PRINCIPLED, EMISSION = "ShaderNodeBsdfPrincipled", "ShaderNodeEmission"
 
@@ -189,101 +172,3 @@ def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) ->
     made = _link(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
     bpy.context.scene.camera = made
     return made
-
-
-def render_cycles(samples: int, seeds: int = 2) -> np.ndarray:
-    """(seeds, height, width, 3) float64 scene-linear pictures, row 0 at the bottom."""
-    return _cycles_pictures(samples, seeds)[..., :3]
-
-
-def render_cycles_over(background: float, samples: int, seeds: int = 2) -> np.ndarray:
-    """render_cycles with a transparent film, laid over an even background of some radiance."""
-    bpy.context.scene.render.film_transparent = True
-    pictures = _cycles_pictures(samples, seeds)
-    bpy.context.scene.render.film_transparent = False
-    return pictures[..., :3] + background * (1.0 - pictures[..., 3:])
-
-
-def _cycles_pictures(samples: int, seeds: int) -> np.ndarray:
-    """(seeds, height, width, 4) float64, premultiplied by alpha; without noise if of a single sample."""
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.samples = samples
-    scene.cycles.seed = FIRST_SEED
-    if samples == 1:
-        return _render_seeds(seeds)
-    return references.light(lambda: _render_seeds(seeds), seeds)
-
-
-def _render_seeds(seeds: int) -> np.ndarray:
-    scene = bpy.context.scene
-    pictures = []
-    for seed in range(seeds):
-        scene.cycles.seed = FIRST_SEED + seed
-        channels = cycles_channels(scene.cycles.samples)
-        pictures.append(np.stack([channels[f"Combined.{letter}"] for letter in "RGBA"], axis=-1))
-    return np.array(pictures, np.float64)
-
-
-def unfilter() -> None:
-    """Have Cycles look through the middles of pixels, or next to them."""
-    cycles = bpy.context.scene.cycles
-    cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
-
-
-def cycles_channels(samples: int = 1) -> dict[str, np.ndarray]:
-    """Return Cycles' view layer by pass and channel ("Depth.Z"): (H, W) float32, row 0 at the bottom."""
-    scene = bpy.context.scene
-    scene.render.engine, scene.cycles.samples = "CYCLES", samples
-    return _render_channels()
-
-
-def render_final(samples: int, seeds: int = 3) -> np.ndarray:
-    """(seeds, height, width, 3) float64, row 0 at the bottom: what RPPM gives as Blender's render engine, of what
-    Blender evaluates for renders and not for viewports."""
-    if references.only_cycles():
-        pytest.skip("only Cycles' side")
-    scene = bpy.context.scene
-    scene.render.engine, scene.rppm.samples, scene.rppm.photons = "RPPM", samples, 256
-    pictures = []
-    for seed in range(seeds):
-        scene.rppm.seed = seed
-        channels = _render_channels()
-        pictures.append(np.stack([channels[f"Combined.{letter}"] for letter in "RGB"], axis=-1))
-    return np.array(pictures, np.float64)
-
-
-def _render_channels() -> dict[str, np.ndarray]:
-    scene = bpy.context.scene
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "picture.exr")
-        bpy.ops.render.render(write_still=True)
-        with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:  # each pass is a part of its own
-            channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
-    return {name.partition(".")[2]: pixels[::-1] for name, pixels in channels.items()}
-
-
-def exported_scene() -> Scene:
-    """The current Blender scene as RPPM sees it."""
-    scene = export_scene(bpy.context.evaluated_depsgraph_get())
-    assert scene.warnings == [], scene.warnings
-    return scene
-
-
-@dataclass
-class Rendered:
-    pictures: np.ndarray
-    """(seeds, height, width, 3) float64, row 0 at the bottom."""
-    statistics: RenderStatistics
-    """Statistics of the last seed's render."""
-
-
-def render_rppm(renderer: Renderer, seeds: int = 3, **settings: object) -> Rendered:
-    """The current Blender scene from independent seeds; settings by the names of RenderSettings."""
-    scene = exported_scene()
-    pictures = []
-    for seed in range(seeds):
-        scene.settings = scene.settings.with_values(seed=seed, **settings)
-        result = renderer.render(scene)
-        pictures.append(result.frame.combined[..., :3].astype(np.float64))
-    return Rendered(np.array(pictures), result.statistics)

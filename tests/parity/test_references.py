@@ -7,8 +7,9 @@ import pytest
 
 from . import references
 from .comparison import block_means
+from .engines import render_cycles
 from .scene_digest import scene_digest
-from .scenes import DIFFUSE, GLASS, ball, camera, light, material, new_scene, place, plane, render_cycles
+from .scenes import DIFFUSE, GLASS, ball, camera, light, material, new_scene, place, plane
 
 
 def pictures(seed: int, level: float = 1.0) -> np.ndarray:

@@ -12,7 +12,7 @@ from rppm_addon.scene import Scene
 from rppm_addon.session.render.renderer import Renderer
 
 from ..comparison import _squared_error, block_means
-from ..scenes import render_cycles
+from ..engines import render_cycles
 from .flip import flip
 from .rows import Kind, Row
 

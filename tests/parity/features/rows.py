@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from ..net import Net, material
 from . import stage
-from .net import Net, material
 
 
 class Kind(enum.Enum):
