@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Node trees in few words."""
 
+from collections.abc import Callable
+
 import bpy
 
 
@@ -11,17 +13,19 @@ class Net:
         self.tree = tree
 
     def node(self, kind: str, /, inputs: dict | None = None, **properties: object) -> bpy.types.Node:
-        """A node by its bl_idname without "ShaderNode"; inputs by name, identifier or place: values or sockets."""
+        """A node by its bl_idname without "ShaderNode"; inputs by name, identifier or place: values, sockets, or
+        functions of the net that give one of them."""
+        given = {name: value(self) if callable(value) else value for name, value in (inputs or {}).items()}
         made = self.tree.nodes.new(f"ShaderNode{kind}")
         for name, value in properties.items():
             setattr(made, name, value)
-        for name, value in (inputs or {}).items():
-            self.set(_socket(made.inputs, name), value)
+        for name, value in given.items():
+            self.set(_found(made.inputs, name), value)
         return made
 
     def out(self, kind: str, output: str | int = 0, /, inputs: dict | None = None, **properties: object):
         """An output of a new node."""
-        return _socket(self.node(kind, inputs, **properties).outputs, output)
+        return _found(self.node(kind, inputs, **properties).outputs, output)
 
     def set(self, socket: bpy.types.NodeSocket, value: object) -> None:
         """Link an output to an input, or store a value in it."""
@@ -33,7 +37,7 @@ class Net:
         else:
             socket.default_value = value
 
-    def scaled(self, value: bpy.types.NodeSocket, scale: float, offset: float) -> bpy.types.NodeSocket:
+    def scaled(self, value: object, scale: float, offset: float) -> bpy.types.NodeSocket:
         """value * scale + offset, component by component."""
         return self.out("VectorMath", inputs={0: value, 1: (scale,) * 3, 2: (offset,) * 3}, operation="MULTIPLY_ADD")
 
@@ -46,11 +50,20 @@ class Net:
         self.node("OutputMaterial", inputs=sockets)
 
 
-def _socket(sockets, name: str | int):
+Socket = Callable[[Net], bpy.types.NodeSocket]
+"""A function that makes nodes in a net and gives an output of theirs."""
+
+
+def _found(sockets, name: str | int):
     if isinstance(name, int):
         return sockets[name]
     enabled = [socket for socket in sockets if socket.enabled]
     return next(s for s in (*enabled, *sockets) if name in (s.name, s.identifier))
+
+
+def socket(kind: str, output: str | int = 0, /, inputs: dict | None = None, **properties: object) -> Socket:
+    """An output of a node to come: a function that makes it in a net, as Net.out does."""
+    return lambda net: net.out(kind, output, inputs, **properties)
 
 
 def material(name: str = "Feature") -> tuple[bpy.types.Material, Net]:
@@ -60,3 +73,10 @@ def material(name: str = "Feature") -> tuple[bpy.types.Material, Net]:
         made.use_nodes = True
     made.node_tree.nodes.clear()
     return made, Net(made.node_tree)
+
+
+def diffuse(name: str, color: tuple[float, float, float]) -> bpy.types.Material:
+    """A diffuse material."""
+    made, net = material(name)
+    net.output(net.out("BsdfDiffuse", inputs={"Color": color}))
+    return made

@@ -101,15 +101,19 @@ def place(
     return Matrix.Translation(Vector(at)) @ rotation @ Matrix.Diagonal((*scale, 1.0))
 
 
-def _mesh(vertices: Sequence, faces: Sequence, surface: bpy.types.Material, matrix: Matrix | None) -> bpy.types.Object:
-    data = bpy.data.meshes.new("Mesh")
+def mesh_object(
+    vertices: Sequence, faces: Sequence, surface: bpy.types.Material, matrix: Matrix | None = None, name: str = "Mesh"
+) -> bpy.types.Object:
+    """An object of a mesh of one material, in the current scene."""
+    data = bpy.data.meshes.new(name)
     data.from_pydata(vertices, [], faces)
     data.materials.append(surface)
-    return _link(data, matrix)
+    return link_object(data, matrix)
 
 
-def _link(data: bpy.types.ID, matrix: Matrix | None) -> bpy.types.Object:
-    made = bpy.data.objects.new(data.name, data)
+def link_object(data: bpy.types.ID | None, matrix: Matrix | None = None, name: str = "") -> bpy.types.Object:
+    """An object of some data, by the data's name if none is given, in the current scene."""
+    made = bpy.data.objects.new(name or data.name, data)
     bpy.context.scene.collection.objects.link(made)
     if matrix is not None:
         made.matrix_world = matrix
@@ -119,7 +123,7 @@ def _link(data: bpy.types.ID, matrix: Matrix | None) -> bpy.types.Object:
 def plane(half: float, surface: bpy.types.Material, matrix: Matrix | None = None) -> bpy.types.Object:
     """A square in XY that faces +Z."""
     corners = [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)]
-    return _mesh(corners, [(0, 1, 2, 3)], surface, matrix)
+    return mesh_object(corners, [(0, 1, 2, 3)], surface, matrix)
 
 
 def box(half: Sequence[float], surface: bpy.types.Material, matrix: Matrix | None = None) -> bpy.types.Object:
@@ -127,7 +131,7 @@ def box(half: Sequence[float], surface: bpy.types.Material, matrix: Matrix | Non
     x, y, z = half
     corners = [(i * x, j * y, k * z) for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)]
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    return _mesh(corners, faces, surface, matrix)
+    return mesh_object(corners, faces, surface, matrix)
 
 
 def ball(
@@ -149,7 +153,7 @@ def ball(
         for ring in range(rings - 2):
             low, high = 1 + ring * segments, 1 + (ring + 1) * segments
             faces.append((low + i, low + j, high + j, high + i))
-    made = _mesh(vertices, faces, surface, matrix)
+    made = mesh_object(vertices, faces, surface, matrix)
     made.data.shade_smooth()
     return made
 
@@ -160,7 +164,7 @@ def light(kind: str, energy: float, matrix: Matrix, **properties: object) -> bpy
     data.energy = energy
     for name, value in properties.items():
         setattr(data, name, value)
-    return _link(data, matrix)
+    return link_object(data, matrix)
 
 
 def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) -> bpy.types.Object:
@@ -169,6 +173,6 @@ def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) ->
     data.angle = math.radians(angle)
     data.clip_start, data.clip_end = 0.01, 100.0
     direction = Vector(toward) - Vector(at)
-    made = _link(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
+    made = link_object(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
     bpy.context.scene.camera = made
     return made

@@ -8,14 +8,7 @@ import numpy as np
 import pytest
 from support.families import some_each_time
 
-from ..engines import (
-    PIXEL_CENTERS,
-    compare_with_cycles,
-    cycles_channels,
-    render_frame,
-    stacked,
-    unfilter,
-)
+from ..engines import PIXEL_CENTERS, compare_with_cycles, cycles_channels, render_frame, stacked, unfilter
 from ..scenes import DIFFUSE, EMISSION, ball, box, camera, light, material, new_scene, place, plane
 
 PHOTONS = {"photons": 4096, "photon_path_length": 6, "iterations": 12, "seeds": 2}

@@ -249,13 +249,7 @@ def test_radial_tiling(library, tmp_path):
 
 GABOR_INPUTS = [
     {},
-    {
-        "scale": -3.1,
-        "frequency": 1.3,
-        "anisotropy": 0.3,
-        "orientation_2d": -0.4,
-        "orientation_3d": (0.3, -0.5, 0.2),
-    },
+    {"scale": -3.1, "frequency": 1.3, "anisotropy": 0.3, "orientation_2d": -0.4, "orientation_3d": (0.3, -0.5, 0.2)},
     {"scale": 100.0, "anisotropy": 0.0},
     {"frequency": 0.0, "anisotropy": 2.0, "orientation_3d": (0.0, 0.0, -2.0)},
 ]

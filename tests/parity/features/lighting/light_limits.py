@@ -3,20 +3,20 @@
 
 import bpy
 
-from ...net import material
+from ...net import diffuse
 from ...scenes import light, place
 from .lights import ABOVE, lights
 
 
-def _second() -> None:
-    """A weak light without limits, from the other side."""
+def second_lamp() -> None:
+    """A weak light, without limits and links, from the other side."""
     light("POINT", 12.0, place(at=(-1.5, -1.5, 2.0)), shadow_soft_size=0.1, color=(0.4, 0.7, 1.0))
 
 
 def _without_shadow(kind, energy=60.0, **properties):
     def make() -> None:
         light(kind, energy, place(**ABOVE), use_shadow=False, **properties)
-        _second()
+        second_lamp()
 
     return make
 
@@ -28,8 +28,7 @@ lights("Cast Shadow", "off, area", _without_shadow("AREA", size=0.8))
 
 def brighten() -> None:
     """White surfaces, which scatter light often."""
-    white, net = material("White")
-    net.output(net.out("BsdfDiffuse", inputs={"Color": (0.9, 0.85, 0.8)}))
+    white = diffuse("White", (0.9, 0.85, 0.8))
     for name in ("Ball", "Ground"):
         bpy.data.objects[name].data.materials[0] = white
 

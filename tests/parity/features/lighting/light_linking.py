@@ -6,6 +6,7 @@ import bpy
 from ...net import material
 from ...scenes import light, place
 from .. import stage
+from .light_limits import second_lamp
 from .lights import ABOVE, lights
 
 
@@ -26,11 +27,6 @@ def _lamp(kind="POINT", energy=60.0, **properties):
     return lambda: light(kind, energy, place(**ABOVE), **properties)
 
 
-def _second() -> None:
-    """A weak light that is not linked, from the other side."""
-    light("POINT", 12.0, place(at=(-1.5, -1.5, 2.0)), shadow_soft_size=0.1, color=(0.4, 0.7, 1.0))
-
-
 def _glow() -> bpy.types.Object:
     surface, net = material("Glow")
     net.output(net.emission((1.0, 0.8, 0.6), 10.0))
@@ -43,7 +39,7 @@ def _linked(make, member, *states, child=""):
     def build() -> None:
         emitter = make()
         setattr(emitter.light_linking, member, _collection(*states, child=child))
-        _second()
+        second_lamp()
 
     return build
 

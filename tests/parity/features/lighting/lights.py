@@ -5,7 +5,7 @@ import math
 
 from rppm_addon.scene import DirectLight
 
-from ...net import Net, material
+from ...net import Net, diffuse, material, socket
 from ...scenes import light, place
 from .. import stage
 from ..rows import Row, add
@@ -21,9 +21,7 @@ def lights(group: str, name: str, make, **members: object) -> None:
 
     def build() -> None:
         stage.empty()
-        plain, net = material("Plain")
-        net.output(net.out("BsdfDiffuse", inputs={"Color": (0.6, 0.55, 0.5)}))
-        stage.set_up(plain)
+        stage.set_up(diffuse("Plain", (0.6, 0.55, 0.5)))
         make()
 
     add(Row(group, name, build, **members))
@@ -81,71 +79,43 @@ def light_with_nodes(kind, feed, where=None, **properties):
     return make
 
 
-lights("Light nodes", "constant", light_with_nodes("POINT", lambda net: ((0.4, 0.8, 1.0), 1.5), shadow_soft_size=0.1))
-lights(
-    "Light nodes",
-    "blackbody",
-    light_with_nodes("AREA", lambda net: (net.out("Blackbody", 0, {0: 3200.0}), 1.0), size=0.8),
-)
-lights(
-    "Light nodes",
-    "quadratic falloff",
-    light_with_nodes(
-        "POINT",
-        lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0})),
-        shadow_soft_size=0.1,
-    ),
-)
-lights(
-    "Light nodes",
-    "smooth quadratic falloff",
-    light_with_nodes(
-        "POINT",
-        lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Quadratic", {"Strength": 1.0, "Smooth": 1.0})),
-        shadow_soft_size=0.1,
-    ),
-)
-lights(
-    "Light nodes",
-    "linear falloff",
-    light_with_nodes(
-        "POINT",
-        lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Linear", {"Strength": 0.4})),
-        shadow_soft_size=0.1,
-    ),
-)
-lights(
-    "Light nodes",
-    "constant falloff",
-    light_with_nodes(
-        "AREA", lambda net: ((1.0, 1.0, 1.0), net.out("LightFalloff", "Constant", {"Strength": 0.2})), size=0.8
-    ),
-)
 WHITE = (1.0, 1.0, 1.0)
+SMALL = {"shadow_soft_size": 0.1}
+
+
+def feed(color=WHITE, strength=1.0):
+    """A function of a net that gives color and strength, which may be functions of it too."""
+    return lambda net: tuple(part(net) if callable(part) else part for part in (color, strength))
+
+
+def _falloff(output, strength=1.0, **inputs):
+    return feed(WHITE, socket("LightFalloff", output, {"Strength": strength} | inputs))
+
+
+NODES = {
+    "constant": ("POINT", feed((0.4, 0.8, 1.0), 1.5), SMALL),
+    "blackbody": ("AREA", feed(socket("Blackbody", 0, {0: 3200.0})), {"size": 0.8}),
+    "quadratic falloff": ("POINT", _falloff("Quadratic"), SMALL),
+    "smooth quadratic falloff": ("POINT", _falloff("Quadratic", Smooth=1.0), SMALL),
+    "linear falloff": ("POINT", _falloff("Linear", 0.4), SMALL),
+    "constant falloff": ("AREA", _falloff("Constant", 0.2), {"size": 0.8}),
+}
+for _name, (_kind, _given, _properties) in NODES.items():
+    lights("Light nodes", _name, light_with_nodes(_kind, _given, **_properties))
 
 
 def _by(coordinates):
     """A color by a coordinate, from 0 to 1 where that goes from -1 to 1."""
-    return lambda net: (net.scaled(net.out("TexCoord", coordinates), 0.5, 0.5), 1.0)
+    return feed(lambda net: net.scaled(net.out("TexCoord", coordinates), 0.5, 0.5))
 
 
-def _squares(net):
-    return net.out("TexChecker", "Color", {0: net.out("TexCoord", "Normal"), "Scale": 3.3}), 1.0
-
-
-def _gradient(net):
-    return WHITE, net.out("TexGradient", "Fac", {0: net.out("TexCoord", "Normal")})
-
-
-def _image(net):
-    return texture(kind="opaque")(net), 1.0
-
-
-def _incoming(net):
-    around = net.out("VectorMath", "Value", {0: net.out("NewGeometry", "Incoming"), 1: (0.5, -0.2, -0.9)},
-                     operation="DOT_PRODUCT")  # fmt: skip
-    return WHITE, net.out("Math", 0, {0: around, 1: 6.0}, operation="POWER")
-
+_NORMAL, _OPAQUE = socket("TexCoord", "Normal"), texture(kind="opaque")
+_AROUND = {0: socket("NewGeometry", "Incoming"), 1: (0.5, -0.2, -0.9)}
+_TOWARD = socket("VectorMath", "Value", _AROUND, operation="DOT_PRODUCT")
+_squares = feed(socket("TexChecker", "Color", {0: _NORMAL, "Scale": 3.3}))
+_gradient = feed(WHITE, socket("TexGradient", "Fac", {0: _NORMAL}))
+_incoming = feed(WHITE, socket("Math", 0, {0: _TOWARD, 1: 6.0}, operation="POWER"))
+_image = feed(_OPAQUE)
 
 NARROW = {"spot_size": 1.0, "spot_blend": 0.3}
 DISK, SPHERE = {"shadow_soft_size": 0.3}, {"shadow_soft_size": 0.3, "use_soft_falloff": False}
@@ -165,26 +135,21 @@ BY_DIRECTION = {
     "area, incoming": ("AREA", _incoming, {"size": 0.6}),
     "sun, image": ("SUN", _image, {"angle": 0.8}),
 }  # fmt: skip
-for _name, (_kind, _feed, _properties) in BY_DIRECTION.items():
-    lights("Light nodes", _name, light_with_nodes(_kind, _feed, **_properties), effort=2)
+for _name, (_kind, _given, _properties) in BY_DIRECTION.items():
+    lights("Light nodes", _name, light_with_nodes(_kind, _given, **_properties), effort=2)
+_photons = {"settings": {"direct_light": DirectLight.PHOTONS, "photons": 16384}, "effort": 4}
 for _name in ("spot, image", "spot, sphere, color by normal", "point, color by normal", "area, incoming"):
-    _kind, _feed, _properties = BY_DIRECTION[_name]
-    lights(
-        "Light nodes",
-        f"{_name}, by photons",
-        light_with_nodes(_kind, _feed, **_properties),
-        settings={"direct_light": DirectLight.PHOTONS, "photons": 16384},
-        effort=4,
-    )
+    _kind, _given, _properties = BY_DIRECTION[_name]
+    lights("Light nodes", f"{_name}, by photons", light_with_nodes(_kind, _given, **_properties), **_photons)
 for _name, _where in {
     "area, image": IN_VIEW,
     "sun, image": {"turn": (-95.0, 10.0, 10.0)},
     "point, sphere, color by normal": IN_VIEW,
     "point, image": IN_VIEW,
 }.items():
-    _kind, _feed, _properties = BY_DIRECTION[_name]
+    _kind, _given, _properties = BY_DIRECTION[_name]
     _size = {"AREA": {"size": 0.8}, "SUN": {}}.get(_kind, {"shadow_soft_size": 0.4})
-    _make = light_with_nodes(_kind, _feed, _where, **(_properties | _size))
+    _make = light_with_nodes(_kind, _given, _where, **(_properties | _size))
     lights("Light nodes", f"{_name}, in view", _make, effort=3)
 
 
@@ -207,36 +172,19 @@ def _glowing(feed, half=0.7):
     return make
 
 
-lights("Glowing mesh", "plain", _glowing(lambda net: ((1.0, 0.8, 0.6), 10.0)), effort=2)
-lights("Glowing mesh", "strength by an image", _glowing(lambda net: (texture(kind="opaque")(net), 20.0)), effort=2)
-lights(
-    "Glowing mesh",
-    "strength by a checker",
-    _glowing(
-        lambda net: (
-            (1.0, 0.9, 0.8),
-            net.out("Math", 0, {0: net.out("TexChecker", "Fac", {"Scale": 2.0}), 1: 20.0}, operation="MULTIPLY"),
-        )
-    ),
-    effort=2,
-)
-lights(
-    "Glowing mesh",
-    "one side only",
-    _glowing(
-        lambda net: (
-            (1.0, 0.9, 0.8),
-            net.out("Math", 0, {0: net.out("NewGeometry", "Backfacing"), 1: -12.0, 2: 12.0}, operation="MULTIPLY_ADD"),
-        )
-    ),
-    effort=2,
-)
-lights(
-    "Glowing mesh",
-    "by a ramp of noise",
-    _glowing(lambda net: (net.out("ValToRGB", 0, {0: net.out("TexNoise", "Fac", {"Scale": 5.0})}), 20.0)),
-    effort=2,
-)
+_CHECKER, _BACK = socket("TexChecker", "Fac", {"Scale": 2.0}), socket("NewGeometry", "Backfacing")
+_squares_glow = socket("Math", 0, {0: _CHECKER, 1: 20.0}, operation="MULTIPLY")
+_front_glows = socket("Math", 0, {0: _BACK, 1: -12.0, 2: 12.0}, operation="MULTIPLY_ADD")
+_RAMP = socket("ValToRGB", 0, {0: socket("TexNoise", "Fac", {"Scale": 5.0})})
+GLOWS = {
+    "plain": feed((1.0, 0.8, 0.6), 10.0),
+    "strength by an image": feed(_OPAQUE, 20.0),
+    "strength by a checker": feed((1.0, 0.9, 0.8), _squares_glow),
+    "one side only": feed((1.0, 0.9, 0.8), _front_glows),
+    "by a ramp of noise": feed(_RAMP, 20.0),
+}
+for _name, _given in GLOWS.items():
+    lights("Glowing mesh", _name, _glowing(_given), effort=2)
 
 
 def _small_bulbs() -> None:

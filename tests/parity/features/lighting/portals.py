@@ -4,7 +4,7 @@
 import bmesh
 import bpy
 
-from ...net import Net, material
+from ...net import Net, diffuse
 from ...scenes import camera, light, place
 from .. import stage
 from ..rows import Row, add
@@ -46,8 +46,7 @@ def _sky() -> None:
 def _row(name: str, portals, **members: object) -> None:
     def build() -> None:
         stage.empty()
-        plain, net = material("Plain")
-        net.output(net.out("BsdfDiffuse", inputs={"Color": (0.6, 0.55, 0.5)}))
+        plain = diffuse("Plain", (0.6, 0.55, 0.5))
         stage.set_up(plain)
         bpy.data.objects.remove(bpy.data.objects["Ground"])
         bpy.data.objects["Ball"].matrix_world = place(at=(0.7, 0.4, 0.5), scale=(0.55, 0.55, 0.55))

@@ -3,19 +3,20 @@
 
 import bpy
 
-from ...net import Net, material
+from ...net import Net, material, socket
 from .. import stage
 from ..rows import Kind, Row, add
 from ..values.image_textures import picture
 from .light_limits import brighten
+from .lights import feed
 
 
 def _net() -> Net:
     return Net(bpy.context.scene.world.node_tree)
 
 
-def world(group: str, name: str, feed, surface=None, kind: Kind = Kind.LIGHT, **members: object) -> None:
-    """A row of a world whose Background is fed by ``feed(net)``: color and strength."""
+def world(group: str, name: str, given, surface=None, kind: Kind = Kind.LIGHT, **members: object) -> None:
+    """A row of a world whose Background is fed by ``given(net)``: color and strength."""
 
     def build() -> None:
         stage.empty()
@@ -25,7 +26,7 @@ def world(group: str, name: str, feed, surface=None, kind: Kind = Kind.LIGHT, **
         if surface is _shiny:
             bpy.data.objects.remove(bpy.data.objects["Ground"])  # Cycles ends long paths at random
         net = _net()
-        color, strength = feed(net)
+        color, strength = given(net)
         background = stage.background()
         net.set(background.inputs["Color"], color)
         net.set(background.inputs["Strength"], strength)
@@ -33,16 +34,13 @@ def world(group: str, name: str, feed, surface=None, kind: Kind = Kind.LIGHT, **
     add(Row(group, name, build, kind, **members))
 
 
-def _plain(net):
-    return net.out("BsdfDiffuse", inputs={"Color": (0.6, 0.55, 0.5)})
+_plain = socket("BsdfDiffuse", inputs={"Color": (0.6, 0.55, 0.5)})
 
 
-def _shiny(net):
-    return net.out("BsdfAnisotropic", inputs={"Color": 0.9, "Roughness": 0.0}, distribution="GGX")
+_shiny = socket("BsdfAnisotropic", inputs={"Color": 0.9, "Roughness": 0.0}, distribution="GGX")
 
 
-def _black(net):
-    return net.out("BsdfDiffuse", inputs={"Color": 0.0})
+_black = socket("BsdfDiffuse", inputs={"Color": 0.0})
 
 
 MAPPED = {"mean": 0.02, "block": 0.05, "reason": "worlds with nodes are looked up in a map 1024 directions wide"}
@@ -50,99 +48,64 @@ MIRRORED = {"kind": Kind.VALUES, "settings": {"camera_path_length": 4}}
 """Options of rows in which only mirrors are seen."""
 
 
-def _environment(mapping=None, projection="EQUIRECTANGULAR", interpolation="Linear"):
+def _environment(turn=None, **properties):
+    turned = {"Vector": socket("Mapping", inputs={0: GENERATED, "Rotation": turn})} if turn else {}
+
     def give(net):
         image = bpy.data.images.load(picture("exr", 32, 16))
-        inputs = {}
-        if mapping is not None:
-            inputs["Vector"] = net.out("Mapping", inputs={0: net.out("TexCoord", "Generated"), "Rotation": mapping})
-        return net.out(
-            "TexEnvironment", 0, inputs, image=image, projection=projection, interpolation=interpolation
-        ), 0.5
+        return net.out("TexEnvironment", 0, turned, image=image, **properties), 0.5
 
     return give
 
 
-world("Background", "color", lambda net: ((0.4, 0.6, 1.0), 1.2))
-world("Environment Texture", "as it comes", _environment())
-world("Environment Texture", "turned, mirrored", _environment((0.4, -0.5, 1.1)), _shiny, **MIRRORED, **MAPPED)
-world("Environment Texture", "turned", _environment((0.0, 0.0, 1.1)))
-world("Environment Texture", "turned about all axes", _environment((0.4, -0.5, 1.1)))
+GENERATED, CAMERA_RAY = socket("TexCoord", "Generated"), socket("LightPath", "Is Camera Ray")
+
+
+def _around(direction, cosine):
+    """1 within an angle around a direction, else 0."""
+    along = socket("VectorMath", "Value", {0: GENERATED, 1: direction}, operation="DOT_PRODUCT")
+    return socket("Math", 0, {0: along, 1: cosine}, operation="GREATER_THAN")
+
+
+GROUP = "Environment Texture"
+_spotted = socket("MixRGB", 0, {0: _around((0.5, -0.5, 0.7), 0.9), 1: (0.1, 0.1, 0.15), 2: (9.0, 8.0, 6.0)})
+world("Background", "color", feed((0.4, 0.6, 1.0), 1.2))
+world(GROUP, "as it comes", _environment())
+world(GROUP, "turned, mirrored", _environment((0.4, -0.5, 1.1)), _shiny, **MIRRORED, **MAPPED)
+world(GROUP, "turned", _environment((0.0, 0.0, 1.1)))
+world(GROUP, "turned about all axes", _environment((0.4, -0.5, 1.1)))
 for _interpolation in ("Closest", "Cubic"):
-    world(
-        "Environment Texture",
-        f"mirrored, {_interpolation}",
-        _environment(interpolation=_interpolation),
-        _shiny,
-        **MIRRORED,
-        **MAPPED,
-    )
-world(
-    "Environment Texture", "mirror ball, mirrored", _environment(projection="MIRROR_BALL"), _shiny, **MIRRORED, **MAPPED
-)
-world(
-    "Environment Texture",
-    "a bright spot",
-    lambda net: (
-        net.out(
-            "MixRGB",
-            0,
-            {
-                0: net.out(
-                    "Math",
-                    0,
-                    {
-                        0: net.out(
-                            "VectorMath",
-                            "Value",
-                            {0: net.out("TexCoord", "Generated"), 1: (0.5, -0.5, 0.7)},
-                            operation="DOT_PRODUCT",
-                        ),
-                        1: 0.9,
-                    },
-                    operation="GREATER_THAN",
-                ),
-                1: (0.1, 0.1, 0.15),
-                2: (9.0, 8.0, 6.0),
-            },
-        ),
-        1.0,
-    ),
-)
+    _given = _environment(interpolation=_interpolation)
+    world(GROUP, f"mirrored, {_interpolation}", _given, _shiny, **MIRRORED, **MAPPED)
+world(GROUP, "mirror ball, mirrored", _environment(projection="MIRROR_BALL"), _shiny, **MIRRORED, **MAPPED)
+world(GROUP, "a bright spot", feed(_spotted))
+
+
+def _shades(output):
+    return feed(lambda net: net.scaled(net.out("TexCoord", output), 0.4, 0.5))
+
+
+GROUP = "World coordinates"
 for _output in ("Generated", "Normal", "Object", "Reflection"):
-    world(
-        "World coordinates",
-        _output,
-        (lambda output: lambda net: (net.scaled(net.out("TexCoord", output), 0.4, 0.5), 1.0))(_output),
-        _shiny,
-        **MIRRORED,
-    )
-world("World coordinates", "Window", lambda net: (net.out("TexCoord", "Window"), 1.0), _black, **MIRRORED)
-world(
-    "World nodes",
-    "gradient",
-    lambda net: (net.out("ValToRGB", 0, {0: net.out("SeparateXYZ", 2, {0: net.out("TexCoord", "Generated")})}), 1.0),
-)
-world("World nodes", "noise", lambda net: (net.out("TexNoise", "Color", {"Scale": 3.0}), 1.0))
-world(
-    "World nodes",
-    "black to the camera",
-    lambda net: (
-        (0.6, 0.8, 1.0),
-        net.out("Math", 0, {0: 1.0, 1: net.out("LightPath", "Is Camera Ray")}, operation="SUBTRACT"),
-    ),
-)
-world("World nodes", "blackbody", lambda net: (net.out("Blackbody", 0, {0: 4500.0}), 0.7))
+    world(GROUP, _output, _shades(_output), _shiny, **MIRRORED)
+world(GROUP, "Window", feed(socket("TexCoord", "Window")), _black, **MIRRORED)
+
+GROUP = "World nodes"
+_height = socket("SeparateXYZ", 2, {0: GENERATED})
+_unseen = socket("Math", 0, {0: 1.0, 1: CAMERA_RAY}, operation="SUBTRACT")
+world(GROUP, "gradient", feed(socket("ValToRGB", 0, {0: _height})))
+world(GROUP, "noise", feed(socket("TexNoise", "Color", {"Scale": 3.0})))
+world(GROUP, "black to the camera", feed((0.6, 0.8, 1.0), _unseen))
+world(GROUP, "blackbody", feed(socket("Blackbody", 0, {0: 4500.0}), 0.7))
 
 
 def _mixed_world(net):
     """Two Backgrounds by Is Camera Ray."""
-    tree = net.tree
     first = stage.background()
     second = net.node("Background", {"Color": (0.1, 0.3, 0.1), "Strength": 1.0})
-    mix = net.node("MixShader", {0: net.out("LightPath", "Is Camera Ray"), 1: first.outputs[0], 2: second.outputs[0]})
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_WORLD")
-    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    mix = net.node("MixShader", {0: CAMERA_RAY, 1: first.outputs[0], 2: second.outputs[0]})
+    output = next(node for node in net.tree.nodes if node.type == "OUTPUT_WORLD")
+    net.set(output.inputs["Surface"], mix.outputs[0])
     return (0.8, 0.7, 0.6), 1.0
 
 
@@ -171,34 +134,20 @@ for _name, _properties in SKIES.items():
     world("Sky Texture", _name, _sky(_name.partition(",")[0], _properties))
 
 
-def _spot(bounces):
-    """A world of one bright spot, of which Cycles' rays that happen to meet it, and ask for no bounces, know little."""
-
-    def feed(net):
+def _limited(bounces, given):
+    def limit(net):
         bpy.context.scene.world.cycles.max_bounces = bounces
         brighten()
-        along = net.out("VectorMath", "Value", {0: net.out("TexCoord", "Generated"), 1: (0.5, -0.5, 0.707)},
-                        operation="DOT_PRODUCT")  # fmt: skip
-        spot = net.out("Math", 0, {0: along, 1: 0.97}, operation="GREATER_THAN")
-        return (1.0, 0.9, 0.8), net.out("Math", 0, {0: spot, 1: 30.0}, operation="MULTIPLY")
+        return given(net)
 
-    return feed
+    return limit
 
 
 SAMPLED = {"reason": "Cycles leaves in what its rays find of the world by chance", "mean": 0.03, "block": 0.05}
-
-
-def _even(bounces):
-    def feed(net):
-        bpy.context.scene.world.cycles.max_bounces = bounces
-        brighten()
-        return (0.5, 0.55, 0.6), 1.0
-
-    return feed
-
-
-world("Max Bounces", "world with a bright spot, 0", _spot(0), **SAMPLED)
-world("Max Bounces", "even world, 0", _even(0))
+"""A world of one bright spot, of which Cycles' rays that happen to meet it, and ask for no bounces, know little."""
+_brightness = socket("Math", 0, {0: _around((0.5, -0.5, 0.707), 0.97), 1: 30.0}, operation="MULTIPLY")
+world("Max Bounces", "world with a bright spot, 0", _limited(0, feed((1.0, 0.9, 0.8), _brightness)), **SAMPLED)
+world("Max Bounces", "even world, 0", _limited(0, feed((0.5, 0.55, 0.6))))
 
 
 def _hidden(*kinds, even=True, shiny=False):
@@ -217,12 +166,10 @@ def _hidden(*kinds, even=True, shiny=False):
     return feed
 
 
-def _limpid(net):
-    return net.out("BsdfGlass", inputs={"Color": 0.9, "Roughness": 0.0, "IOR": 1.3})
+_limpid = socket("BsdfGlass", inputs={"Color": 0.9, "Roughness": 0.0, "IOR": 1.3})
 
 
-def _principled(net):
-    return net.out("BsdfPrincipled", inputs={"Base Color": (0.6, 0.4, 0.3, 1.0), "Roughness": 0.3})
+_principled = socket("BsdfPrincipled", inputs={"Base Color": (0.6, 0.4, 0.3, 1.0), "Roughness": 0.3})
 
 
 VISIBILITY = "Ray Visibility of the world"

@@ -6,8 +6,8 @@ from collections.abc import Callable
 import bpy
 import numpy as np
 
-from ...net import Net, material
-from ...scenes import camera
+from ...net import Net, material, socket
+from ...scenes import camera, link_object
 from .. import stage
 from ..rows import Kind, Row, add, ground_material
 
@@ -20,9 +20,7 @@ DEEP = {"camera_path_length": 6}
 
 def _linked(data: bpy.types.ID, surface: bpy.types.Material) -> bpy.types.Object:
     data.materials.append(surface)
-    made = bpy.data.objects.new(data.name, data)
-    bpy.context.scene.collection.objects.link(made)
-    return made
+    return link_object(data)
 
 
 def _attribute(data: bpy.types.ID, name: str, kind: str, domain: str, values: np.ndarray) -> None:
@@ -163,10 +161,6 @@ _show(POINTS, "of geometry nodes", cloud)
 _show(HAIR, "children on a ball", haired)
 
 
-def _one(kind: str, output: str, **properties: object) -> Callable[[Net], bpy.types.NodeSocket]:
-    return lambda net: net.out(kind, output, **properties)
-
-
 def _bright(kind: str, output: str, scale: float, offset: float = 0.0) -> Callable[[Net], bpy.types.NodeSocket]:
     return lambda net: net.scaled(net.out(kind, output), scale, offset)
 
@@ -180,10 +174,10 @@ for _output, _scale, _offset in (("Position", 0.3, 0.5), ("Radius", 8.0, 0.0), (
     _show("Point Info", _output, cloud, _bright("PointInfo", _output, _scale, _offset), glow=True)
 _show(CURVES, "Normal of Geometry", thick_tuft, _bright("NewGeometry", "Normal", 0.5, 0.5), glow=True)
 _show(CURVES, "Tangent of Geometry", _curly, _bright("NewGeometry", "Tangent", 0.5, 0.5), glow=True)
-_show(CURVES, "UV of the surface", thick_tuft, _one("TexCoord", "UV"), glow=True)
-_show(CURVES, "an attribute of curves", thick_tuft, _one("Attribute", "Color", attribute_name="tint"), glow=True)
-_show(POINTS, "an attribute of points", cloud, _one("Attribute", "Color", attribute_name="tint"), glow=True)
+_show(CURVES, "UV of the surface", thick_tuft, socket("TexCoord", "UV"), glow=True)
+_show(CURVES, "an attribute of curves", thick_tuft, socket("Attribute", "Color", attribute_name="tint"), glow=True)
+_show(POINTS, "an attribute of points", cloud, socket("Attribute", "Color", attribute_name="tint"), glow=True)
 _show(POINTS, "Normal of Geometry", cloud, _bright("NewGeometry", "Normal", 0.5, 0.5), glow=True)
 _show(HAIR, "Intercept", haired, _bright("HairInfo", "Intercept", 1.0, 0.2), glow=True)
-_show(HAIR, "UV of the surface", haired, _one("TexCoord", "UV"), glow=True)
+_show(HAIR, "UV of the surface", haired, socket("TexCoord", "UV"), glow=True)
 _show(HAIR, "Generated", haired, _bright("TexCoord", "Generated", 0.3, 0.4), glow=True)

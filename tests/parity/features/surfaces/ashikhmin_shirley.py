@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Glossy BSDF with the distribution of Ashikhmin and Shirley: rough enough to store photons, and stretched."""
 
+from ...net import socket
 from ..rows import lit
 
 GROUP = "Ashikhmin-Shirley"
 
 
 def _glossy(inputs):
-    color = {"Color": (0.8, 0.45, 0.3)}
-    return lambda net: net.out("BsdfAnisotropic", 0, color | inputs, distribution="ASHIKHMIN_SHIRLEY")
+    return socket("BsdfAnisotropic", 0, {"Color": (0.8, 0.45, 0.3)} | inputs, distribution="ASHIKHMIN_SHIRLEY")
 
 
 lit(GROUP, "roughness 0.8", _glossy({"Roughness": 0.8}))

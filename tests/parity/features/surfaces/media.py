@@ -8,8 +8,8 @@ from collections.abc import Callable
 import bmesh
 import bpy
 
-from ...net import Net, material
-from ...scenes import camera, light, place
+from ...net import Net, diffuse, material
+from ...scenes import camera, light, mesh_object, place
 from .. import stage
 from ..lighting.lights import ABOVE
 from ..rows import Row, add, ground_material
@@ -38,22 +38,11 @@ def _absorption(net: Net, color: tuple, density: float) -> bpy.types.NodeSocket:
     return net.out("VolumeAbsorption", inputs={"Color": color, "Density": density})
 
 
-def _plain() -> bpy.types.Material:
-    made, net = material("Plain")
-    net.output(net.out("BsdfDiffuse", inputs={"Color": (0.6, 0.55, 0.5)}))
-    return made
-
-
 def block(surface: bpy.types.Material, low: tuple, high: tuple) -> bpy.types.Object:
     """A closed box between two corners, seen from outside."""
     corners = [(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    data = bpy.data.meshes.new("Block")
-    data.from_pydata(corners, [], faces)
-    data.materials.append(surface)
-    made = bpy.data.objects.new("Block", data)
-    bpy.context.scene.collection.objects.link(made)
-    return made
+    return mesh_object(corners, faces, surface, name="Block")
 
 
 def _row(name: str, prepare: Callable[[], bpy.types.Material], world: float = 0.1, **members: object) -> None:
@@ -61,7 +50,7 @@ def _row(name: str, prepare: Callable[[], bpy.types.Material], world: float = 0.
 
     def build() -> None:
         stage.empty()
-        plain, ground = _plain(), ground_material()
+        plain, ground = diffuse("Plain", (0.6, 0.55, 0.5)), ground_material()
         made = stage.set_up(plain, world, ground)
         ball = made[0].data
         made[0].matrix_world = place(**BALL)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Metallic BSDF."""
 
+from ...net import socket
 from ..rows import lit
 
 GROUP = "Metallic"
@@ -8,7 +9,7 @@ FILM = {"Roughness": 0.2, "Thin Film Thickness": 400.0}
 
 
 def _metallic(inputs, **properties):
-    return lambda net: net.out("BsdfMetallic", 0, inputs, **properties)
+    return socket("BsdfMetallic", 0, inputs, **properties)
 
 
 lit(GROUP, "plain", _metallic({"Roughness": 0.3}))

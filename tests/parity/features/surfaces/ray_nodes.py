@@ -4,6 +4,7 @@
 import bmesh
 import bpy
 
+from ...net import socket
 from ...scenes import place
 from .. import stage
 from ..rows import lit
@@ -45,73 +46,43 @@ def _alone(prepare=None):
     return build
 
 
-def _shown(output="AO", inputs=None, scale=1.0, **properties):
+def _glow(given):
+    return lambda net: net.emission(given(net))
+
+
+def _shown(output="AO", inputs=None, **properties):
     """The value as it glows."""
-    return lambda net: net.emission(net.out("AmbientOcclusion", output, inputs, **properties), scale)
+    return _glow(socket("AmbientOcclusion", output, inputs, **properties))
 
 
-def _ramp(net):
-    """Nodes that are no straight lines show how the values of single places are spread."""
-    found = net.out("AmbientOcclusion", "AO", {"Distance": 0.8}, samples=4)
-    return net.emission(net.out("Math", 0, {0: found, 1: 4.0}, operation="POWER"))
+def _bevel(**inputs):
+    return socket("Bevel", inputs=inputs)
 
 
-def _worn(net):
-    """Return an emission that shows edges, where the bevel's normal turns away from the surface's own."""
-    turned = net.out(
-        "VectorMath", "Value", {0: net.out("Bevel", inputs={"Radius": 0.2}), 1: net.out("NewGeometry", "Normal")},
-        operation="DOT_PRODUCT",
-    )  # fmt: skip
-    return net.emission(turned)
-
-
+_NOISE = socket("TexNoise", inputs={"Scale": 4.0})
 AO = "Ambient Occlusion"
-lit(AO, "as a color", lambda net: net.out("BsdfDiffuse", 0, {"Color": net.out("AmbientOcclusion")}))
-lit(AO, "value", _shown(), on_ground=True, prepare=_slab)
-lit(AO, "tinted, near", _shown("Color", {"Color": (0.9, 0.5, 0.2), "Distance": 0.4}), on_ground=True, prepare=_slab)
-lit(AO, "inside", _shown(inputs={"Distance": 1.2}, inside=True, samples=8), prepare=_alone(_slab))
-lit(AO, "only local", _shown(only_local=True), on_ground=True, prepare=_cube)
-lit(AO, "far as the world says", _shown(inputs={"Distance": 0.0}), on_ground=True)
-lit(
-    AO,
-    "distance by a texture",
-    lambda net: _shown(inputs={"Distance": net.out("TexNoise", inputs={"Scale": 2.0})})(net),
-    on_ground=True,
-)
-lit(AO, "4 samples to the power of 4", _ramp, on_ground=True)
-lit(
-    AO,
-    "about a bump",
-    lambda net: _shown(
-        inputs={"Normal": net.out("Bump", inputs={"Height": net.out("TexNoise", inputs={"Scale": 4.0})})}
-    )(net),
-    prepare=_alone(),
-)
-lit(AO, "about a bevel", lambda net: _shown(inputs={"Normal": net.out("Bevel", inputs={"Radius": 0.3})})(net),
-    prepare=_alone(_cube))  # fmt: skip
-lit("Bevel", "on a smooth ball", lambda net: net.out("BsdfDiffuse", 0, COLOR | {"Normal": net.out("Bevel")}))
-lit("Bevel", "edges of a cube", _worn, prepare=_alone(_cube))
-lit(
-    "Bevel",
-    "diffuse",
-    lambda net: net.out("BsdfDiffuse", 0, COLOR | {"Normal": net.out("Bevel", inputs={"Radius": 0.25})}),
-    prepare=_cube,
-)
-lit(
-    "Bevel",
-    "glossy",
-    lambda net: net.out("BsdfAnisotropic", 0, LOW | {"Normal": net.out("Bevel", 0, {"Radius": 0.25}, samples=8)}),
-    prepare=_cube,
-    effort=4,
-)
-lit(
-    "Bevel",
-    "of a bump",
-    lambda net: net.out(
-        "BsdfDiffuse",
-        0,
-        COLOR | {"Normal": net.out("Bevel", inputs={"Radius": 0.2, "Normal": net.out("Bump", inputs={
-            "Distance": 0.3, "Height": net.out("TexNoise", inputs={"Scale": 4.0})})})},
-    ),
-    prepare=_cube,
-)  # fmt: skip
+GROUND = {"on_ground": True}
+# Nodes that are no straight lines show how the values of single places are spread.
+_few = socket("AmbientOcclusion", "AO", {"Distance": 0.8}, samples=4)
+_ramp = _glow(socket("Math", 0, {0: _few, 1: 4.0}, operation="POWER"))
+_bump = socket("Bump", inputs={"Height": _NOISE})
+lit(AO, "as a color", socket("BsdfDiffuse", 0, {"Color": socket("AmbientOcclusion")}))
+lit(AO, "value", _shown(), _slab, **GROUND)
+lit(AO, "tinted, near", _shown("Color", {"Color": (0.9, 0.5, 0.2), "Distance": 0.4}), _slab, **GROUND)
+lit(AO, "inside", _shown(inputs={"Distance": 1.2}, inside=True, samples=8), _alone(_slab))
+lit(AO, "only local", _shown(only_local=True), _cube, **GROUND)
+lit(AO, "far as the world says", _shown(inputs={"Distance": 0.0}), **GROUND)
+lit(AO, "distance by a texture", _shown(inputs={"Distance": socket("TexNoise", inputs={"Scale": 2.0})}), **GROUND)
+lit(AO, "4 samples to the power of 4", _ramp, **GROUND)
+lit(AO, "about a bump", _shown(inputs={"Normal": _bump}), _alone())
+lit(AO, "about a bevel", _shown(inputs={"Normal": _bevel(Radius=0.3)}), _alone(_cube))
+# Edges, where the bevel's normal turns away from the surface's own.
+_turned = {0: _bevel(Radius=0.2), 1: socket("NewGeometry", "Normal")}
+_worn = _glow(socket("VectorMath", "Value", _turned, operation="DOT_PRODUCT"))
+_glossy = LOW | {"Normal": socket("Bevel", 0, {"Radius": 0.25}, samples=8)}
+_bumped = _bevel(Radius=0.2, Normal=socket("Bump", inputs={"Distance": 0.3, "Height": _NOISE}))
+lit("Bevel", "on a smooth ball", socket("BsdfDiffuse", 0, COLOR | {"Normal": _bevel()}))
+lit("Bevel", "edges of a cube", _worn, _alone(_cube))
+lit("Bevel", "diffuse", socket("BsdfDiffuse", 0, COLOR | {"Normal": _bevel(Radius=0.25)}), _cube)
+lit("Bevel", "glossy", socket("BsdfAnisotropic", 0, _glossy), _cube, effort=4)
+lit("Bevel", "of a bump", socket("BsdfDiffuse", 0, COLOR | {"Normal": _bumped}), _cube)

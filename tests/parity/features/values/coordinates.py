@@ -5,21 +5,25 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
+from ...net import socket
 from ...scenes import place
 from ..rows import value
 
 GROUP = "Texture Coordinate"
+SIGNED = (0.5, 0.5)
+"""Scale and offset that show numbers from -1 to 1."""
 
 
-def _coordinate(output):
-    return lambda net: net.out("TexCoord", output)
+def outputs(group: str, kind: str, shown: dict[str, tuple[float, float]], prepare=None) -> None:
+    """Rows of outputs of a node, by name with their scale and offset."""
+    for output, (scale, offset) in shown.items():
+        value(group, output, socket(kind, output), scale, offset, prepare)
 
 
-for _output, _scale, _offset in (
-    ("Generated", 1.0, 0.0), ("Normal", 0.5, 0.5), ("UV", 1.0, 0.0), ("Object", 0.1, 0.5), ("Camera", 0.1, 0.5),
-    ("Window", 1.0, 0.0), ("Reflection", 0.5, 0.5),
-):  # fmt: skip
-    value(GROUP, _output, _coordinate(_output), _scale, _offset)
+outputs(GROUP, "TexCoord", {
+    "Generated": (1.0, 0.0), "Normal": SIGNED, "UV": (1.0, 0.0), "Object": (0.1, 0.5), "Camera": (0.1, 0.5),
+    "Window": (1.0, 0.0), "Reflection": SIGNED,
+})  # fmt: skip
 
 
 def _empty() -> bpy.types.Object:
@@ -30,7 +34,7 @@ def _empty() -> bpy.types.Object:
 
 
 value(GROUP, "Object, of another", lambda net: net.out("TexCoord", "Object", object=_empty()), 0.1, 0.5)
-value("UV Map", "active", lambda net: net.out("UVMap"))
+value("UV Map", "active", socket("UVMap"))
 
 
 def second_uv() -> None:
@@ -41,13 +45,12 @@ def second_uv() -> None:
         layer.data.foreach_set("uv", 0.6 * uv + 0.2)
 
 
-value("UV Map", "second", lambda net: net.out("UVMap", uv_map="Second"), prepare=second_uv)
+value("UV Map", "second", socket("UVMap", uv_map="Second"), prepare=second_uv)
 
-for _output, _scale, _offset in (
-    ("Position", 0.1, 0.5), ("Normal", 0.5, 0.5), ("Tangent", 0.5, 0.5), ("True Normal", 0.5, 0.5),
-    ("Incoming", 0.5, 0.5), ("Parametric", 1.0, 0.0), ("Backfacing", 0.5, 0.25),
-):  # fmt: skip
-    value("Geometry", _output, (lambda output: lambda net: net.out("NewGeometry", output))(_output), _scale, _offset)
+outputs("Geometry", "NewGeometry", {
+    "Position": (0.1, 0.5), "Normal": SIGNED, "Tangent": SIGNED, "True Normal": SIGNED, "Incoming": SIGNED,
+    "Parametric": (1.0, 0.0), "Backfacing": (0.5, 0.25),
+})  # fmt: skip
 
 
 def _turned() -> None:
@@ -56,23 +59,11 @@ def _turned() -> None:
 
 
 for _output in ("Normal", "True Normal", "Backfacing"):
-    value(
-        "Geometry",
-        f"{_output}, seen from behind",
-        (lambda output: lambda net: net.out("NewGeometry", output))(_output),
-        0.5,
-        0.5,
-        _turned,
-    )
-value(
-    "Geometry",
-    "Pointiness",
-    lambda net: net.out("NewGeometry", "Pointiness"),
-)
-
-CAMERA = (("View Vector", 0.5, 0.5), ("View Z Depth", 0.1, 0.0), ("View Distance", 0.1, 0.0))
-for _output, _scale, _offset in CAMERA:
-    value("Camera Data", _output, (lambda output: lambda net: net.out("CameraData", output))(_output), _scale, _offset)
+    value("Geometry", f"{_output}, seen from behind", socket("NewGeometry", _output), *SIGNED, _turned)
+value("Geometry", "Pointiness", socket("NewGeometry", "Pointiness"))
+outputs("Camera Data", "CameraData", {
+    "View Vector": SIGNED, "View Z Depth": (0.1, 0.0), "View Distance": (0.1, 0.0),
+})  # fmt: skip
 
 
 # --- attributes ---------------------------------------------------------------------------------------
@@ -95,38 +86,26 @@ def attribute_values(kind: str, domain: str, field: str, width: int):
     return prepare
 
 
+def _attribute(output: str = "Color", name: str = "Values", **properties: str):
+    return socket("Attribute", output, attribute_name=name, **properties)
+
+
 ATTRIBUTES = {
     "FLOAT": ("value", 1), "INT": ("value", 1), "BOOLEAN": ("value", 1), "INT8": ("value", 1),
     "FLOAT_VECTOR": ("vector", 3), "FLOAT2": ("vector", 2), "FLOAT_COLOR": ("color", 4), "BYTE_COLOR": ("color", 4),
 }  # fmt: skip
-for _kind, (_field, _width) in ATTRIBUTES.items():
-    for _domain in ("POINT", "CORNER", "FACE") if _kind in {"FLOAT", "FLOAT_COLOR"} else ("POINT",):
-        if _kind == "FLOAT2":
-            _domain = "CORNER"
-        value(
-            "Attribute",
-            f"Color of {_kind} by {_domain}",
-            lambda net: net.out("Attribute", "Color", attribute_name="Values"),
-            0.2 if _kind.startswith("INT") else 1.0,
-            prepare=attribute_values(_kind, _domain, _field, _width),
-        )
+DOMAINS = dict.fromkeys(("FLOAT", "FLOAT_COLOR"), ("POINT", "CORNER", "FACE")) | {"FLOAT2": ("CORNER",)}
+for _kind, _field in ATTRIBUTES.items():
+    _scale = 0.2 if _kind.startswith("INT") else 1.0
+    for _domain in DOMAINS.get(_kind, ("POINT",)):
+        _prepare = attribute_values(_kind, _domain, *_field)
+        value("Attribute", f"Color of {_kind} by {_domain}", _attribute(), _scale, prepare=_prepare)
 for _output in ("Vector", "Fac", "Alpha"):
     for _kind in ("FLOAT", "FLOAT_COLOR", "FLOAT_VECTOR"):
-        value(
-            "Attribute",
-            f"{_output} of {_kind}",
-            (lambda output: lambda net: net.out("Attribute", output, attribute_name="Values"))(_output),
-            prepare=attribute_values(_kind, "POINT", *ATTRIBUTES[_kind]),
-        )
-value(
-    "Attribute",
-    "of an edge",
-    lambda net: net.out("Attribute", "Fac", attribute_name="Values"),
-    1.0,
-    0.2,
-    prepare=attribute_values("FLOAT", "EDGE", "value", 1),
-)
-value("Attribute", "missing", lambda net: net.out("Attribute", "Color", attribute_name="Nothing"), 1.0, 0.2, warns=True)
+        _prepare = attribute_values(_kind, "POINT", *ATTRIBUTES[_kind])
+        value("Attribute", f"{_output} of {_kind}", _attribute(_output), prepare=_prepare)
+value("Attribute", "of an edge", _attribute("Fac"), 1.0, 0.2, attribute_values("FLOAT", "EDGE", "value", 1))
+value("Attribute", "missing", _attribute(name="Nothing"), 1.0, 0.2, warns=True)
 
 
 def _properties() -> None:
@@ -139,52 +118,20 @@ def _properties() -> None:
 
 
 for _kind in ("OBJECT", "INSTANCER", "VIEW_LAYER"):
-    value(
-        "Attribute",
-        f"custom property, {_kind}",
-        (lambda kind: lambda net: net.out("Attribute", "Color", attribute_name="Own", attribute_type=kind))(_kind),
-        1.0,
-        0.1,
-        _properties,
-    )
-value(
-    "Attribute",
-    "property color, OBJECT",
-    lambda net: net.out("Attribute", "Color", attribute_name="color", attribute_type="OBJECT"),
-    prepare=_properties,
-)
-value(
-    "Color Attribute",
-    "named",
-    lambda net: net.out("VertexColor", "Color", layer_name="Values"),
-    prepare=attribute_values("BYTE_COLOR", "CORNER", "color", 4),
-)
-value(
-    "Color Attribute",
-    "in use",
-    lambda net: net.out("VertexColor", "Color"),
-    prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4),
-)
-value(
-    "Color Attribute",
-    "Alpha",
-    lambda net: net.out("VertexColor", "Alpha", layer_name="Values"),
-    prepare=attribute_values("FLOAT_COLOR", "POINT", "color", 4),
-)
-
-
-for _output, _scale, _offset in (
-    ("Location", 0.3, 0.3), ("Color", 1.0, 0.0), ("Alpha", 1.0, 0.0), ("Object Index", 0.1, 0.0),
-    ("Material Index", 0.1, 0.1), ("Random", 1.0, 0.0),
-):  # fmt: skip
-    value(
-        "Object Info",
-        _output,
-        (lambda output: lambda net: net.out("ObjectInfo", output))(_output),
-        _scale,
-        _offset,
-        _properties,
-    )
+    _give = _attribute(name="Own", attribute_type=_kind)
+    value("Attribute", f"custom property, {_kind}", _give, 1.0, 0.1, _properties)
+value("Attribute", "property color, OBJECT", _attribute(name="color", attribute_type="OBJECT"), prepare=_properties)
+for _name, _output, _layer, _kind, _domain in (
+    ("named", "Color", "Values", "BYTE_COLOR", "CORNER"),
+    ("in use", "Color", "", "FLOAT_COLOR", "POINT"),
+    ("Alpha", "Alpha", "Values", "FLOAT_COLOR", "POINT"),
+):
+    _give = socket("VertexColor", _output, layer_name=_layer)
+    value("Color Attribute", _name, _give, prepare=attribute_values(_kind, _domain, "color", 4))
+outputs("Object Info", "ObjectInfo", {
+    "Location": (0.3, 0.3), "Color": (1.0, 0.0), "Alpha": (1.0, 0.0), "Object Index": (0.1, 0.0),
+    "Material Index": (0.1, 0.1), "Random": (1.0, 0.0),
+}, _properties)  # fmt: skip
 
 
 def _with_material_index(net):
@@ -202,90 +149,37 @@ def _ball_alone() -> None:
     bpy.data.objects.remove(bpy.data.objects["Ground"])
 
 
-for _axis in "XYZ":
-    value(
-        "Tangent",
-        f"Radial {_axis}",
-        (lambda axis: lambda net: net.out("Tangent", axis=axis))(_axis),
-        0.5,
-        0.5,
-        _ball_alone,
-    )
-value("Tangent", "UV Map", lambda net: net.out("Tangent", direction_type="UV_MAP"), 0.5, 0.5)
-value(
-    "Tangent",
-    "UV Map, named",
-    lambda net: net.out("Tangent", direction_type="UV_MAP", uv_map="Second"),
-    0.5,
-    0.5,
-    prepare=second_uv,
-)
+def directions(group: str, rows: dict, prepare=None) -> None:
+    """Rows of vectors by name, from -1 to 1."""
+    for name, give in rows.items():
+        value(group, name, give, *SIGNED, prepare)
 
 
-def _bumpy_color(net):
-    """Colors of normals that lean up to 0.4 to all sides."""
-    waves = net.out("TexNoise", "Color", {"Scale": 3.0, "Detail": 0.0})
-    return net.out("VectorMath", inputs={0: waves, 1: (0.8, 0.8, 0.3), 2: (0.1, 0.1, 0.7)}, operation="MULTIPLY_ADD")
+directions("Tangent", {f"Radial {axis}": socket("Tangent", axis=axis) for axis in "XYZ"}, _ball_alone)
+directions("Tangent", {"UV Map": socket("Tangent", direction_type="UV_MAP")})
+directions("Tangent", {"UV Map, named": socket("Tangent", direction_type="UV_MAP", uv_map="Second")}, second_uv)
+
+_WAVES = socket("TexNoise", "Color", {"Scale": 3.0, "Detail": 0.0})
+_BUMPY = socket("VectorMath", 0, {0: _WAVES, 1: (0.8, 0.8, 0.3), 2: (0.1, 0.1, 0.7)}, operation="MULTIPLY_ADD")
+"""Colors of normals that lean up to 0.4 to all sides."""
+
+
+def _normal_map(inputs=None, **properties):
+    return socket("NormalMap", 0, {"Color": _BUMPY} | (inputs or {}), **properties)
 
 
 for _space in ("TANGENT", "OBJECT", "WORLD", "BLENDER_OBJECT", "BLENDER_WORLD"):
     for _strength in (1.0, 0.4):
-        value(
-            "Normal Map",
-            f"{_space}, strength {_strength}",
-            (
-                lambda space, strength: (
-                    lambda net: net.out(
-                        "NormalMap", inputs={"Color": _bumpy_color(net), "Strength": strength}, space=space
-                    )
-                )
-            )(_space, _strength),
-            0.5,
-            0.5,
-        )
-value(
-    "Normal Map",
-    "TANGENT, strength 2",
-    lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net), "Strength": 2.0}),
-    0.5,
-    0.5,
-)
-value(
-    "Normal Map",
-    "TANGENT, named UV map",
-    lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}, uv_map="Second"),
-    0.5,
-    0.5,
-    prepare=second_uv,
-)
-value(
-    "Normal Map",
-    "TANGENT, seen from behind",
-    lambda net: net.out("NormalMap", inputs={"Color": _bumpy_color(net)}),
-    0.5,
-    0.5,
-    prepare=_turned,
-)
+        _give = _normal_map({"Strength": _strength}, space=_space)
+        directions("Normal Map", {f"{_space}, strength {_strength}": _give})
+directions("Normal Map", {"TANGENT, strength 2": _normal_map({"Strength": 2.0})})
+directions("Normal Map", {"TANGENT, named UV map": _normal_map(uv_map="Second")}, second_uv)
+directions("Normal Map", {"TANGENT, seen from behind": _normal_map()}, _turned)
 
 
 def _bump(inputs, **properties):
-    def give(net):
-        height = net.out("TexNoise", "Fac", {"Scale": 2.5, "Detail": 0.0})
-        return net.out("Bump", inputs={"Height": height} | inputs, **properties)
-
-    return give
-
-
-value("Bump", "noise", _bump({"Distance": 0.3}), 0.5, 0.5)
-value("Bump", "inverted, strength 0.6", _bump({"Distance": 0.3, "Strength": 0.6}, invert=True), 0.5, 0.5)
-value("Bump", "filter width 1", _bump({"Distance": 0.3, "Filter Width": 1.0}), 0.5, 0.5)
-value("Bump", "no height", lambda net: net.out("Bump"), 0.5, 0.5)
-value(
-    "Bump",
-    "the same height everywhere, over a gray",
-    lambda net: net.out("Bump", inputs={"Height": 6.0, "Normal": net.out("TexNoise", inputs={"Scale": 4.0})}),
-)
-value("Bump", "seen from behind", _bump({"Distance": 0.3}), 0.5, 0.5, prepare=_turned)
+    height = socket("TexNoise", "Fac", {"Scale": 2.5, "Detail": 0.0})
+    return socket("Bump", 0, {"Height": height} | inputs, **properties)
 
 
 def _far_and_parallel() -> None:
@@ -296,45 +190,39 @@ def _far_and_parallel() -> None:
     camera.matrix_world = camera.matrix_world @ Matrix.Translation((0.0, 0.0, 30.0))
 
 
-value("Bump", "orthographic camera", _bump({"Distance": 0.3, "Filter Width": 1.0}), 0.5, 0.5, _far_and_parallel)
-value("Wireframe", "pixels, orthographic camera", lambda net: net.out("Wireframe", inputs={"Size": 3.0},
-      use_pixel_size=True), prepare=_far_and_parallel)  # fmt: skip
+NOISE_BUMP = _bump({"Distance": 0.3})
+WIDE_BUMP = _bump({"Distance": 0.3, "Filter Width": 1.0})
+directions("Bump", {
+    "noise": NOISE_BUMP, "inverted, strength 0.6": _bump({"Distance": 0.3, "Strength": 0.6}, invert=True),
+    "filter width 1": WIDE_BUMP, "no height": socket("Bump"),
+})  # fmt: skip
+_gray = socket("TexNoise", inputs={"Scale": 4.0})
+value("Bump", "the same height everywhere, over a gray", socket("Bump", inputs={"Height": 6.0, "Normal": _gray}))
+directions("Bump", {"seen from behind": NOISE_BUMP}, _turned)
+directions("Bump", {"orthographic camera": WIDE_BUMP}, _far_and_parallel)
+_PIXELS = {"use_pixel_size": True}
+value("Wireframe", "pixels, orthographic camera", socket("Wireframe", inputs={"Size": 3.0}, **_PIXELS),
+      prepare=_far_and_parallel)  # fmt: skip
 
 
 def _bump_on_map(net):
-    mapped = net.out("NormalMap", inputs={"Color": _bumpy_color(net)})
+    mapped = _normal_map()(net)
     return _bump({"Distance": 0.2, "Normal": mapped})(net)
 
 
-value("Bump", "over a normal map", _bump_on_map, 0.5, 0.5)
+directions("Bump", {"over a normal map": _bump_on_map})
 
 for _from, _to in (("WORLD", "OBJECT"), ("OBJECT", "WORLD"), ("CAMERA", "WORLD"), ("OBJECT", "CAMERA")):
     for _kind in ("POINT", "VECTOR", "NORMAL"):
-        value(
-            "Vector Transform",
-            f"{_kind} {_from} to {_to}",
-            (
-                lambda kind, start, end: (
-                    lambda net: net.out(
-                        "VectorTransform",
-                        inputs={0: net.out("TexCoord", "Normal")},
-                        vector_type=kind,
-                        convert_from=start,
-                        convert_to=end,
-                    )
-                )
-            )(_kind, _from, _to),
-            0.1,
-            0.7,
-        )
+        _options = {"vector_type": _kind, "convert_from": _from, "convert_to": _to}
+        _give = socket("VectorTransform", inputs={0: socket("TexCoord", "Normal")}, **_options)
+        value("Vector Transform", f"{_kind} {_from} to {_to}", _give, 0.1, 0.7)
 
 for _output in ("Fresnel", "Facing"):
-    value("Layer Weight", _output, (lambda output: lambda net: net.out("LayerWeight", output, {"Blend": 0.4}))(_output))
-value("Fresnel", "IOR 1.45", lambda net: net.out("Fresnel", inputs={"IOR": 1.45}))
-value("Fresnel", "seen from behind", lambda net: net.out("Fresnel", inputs={"IOR": 1.45}), 1.0, 0.1, _turned)
-value("Fresnel", "of a bump", lambda net: net.out("Fresnel", inputs={"Normal": _bump({"Distance": 0.3})(net)}))
-value(
-    "Layer Weight", "of a bump", lambda net: net.out("LayerWeight", "Facing", {"Normal": _bump({"Distance": 0.3})(net)})
-)
-value("Wireframe", "meters", lambda net: net.out("Wireframe", inputs={"Size": 0.06}), 1.0, 0.1)
-value("Wireframe", "pixels", lambda net: net.out("Wireframe", inputs={"Size": 2.0}, use_pixel_size=True), 1.0, 0.1)
+    value("Layer Weight", _output, socket("LayerWeight", _output, {"Blend": 0.4}))
+value("Fresnel", "IOR 1.45", socket("Fresnel", inputs={"IOR": 1.45}))
+value("Fresnel", "seen from behind", socket("Fresnel", inputs={"IOR": 1.45}), 1.0, 0.1, _turned)
+value("Fresnel", "of a bump", socket("Fresnel", inputs={"Normal": NOISE_BUMP}))
+value("Layer Weight", "of a bump", socket("LayerWeight", "Facing", {"Normal": NOISE_BUMP}))
+value("Wireframe", "meters", socket("Wireframe", inputs={"Size": 0.06}), 1.0, 0.1)
+value("Wireframe", "pixels", socket("Wireframe", inputs={"Size": 2.0}, **_PIXELS), 1.0, 0.1)
