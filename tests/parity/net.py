@@ -27,6 +27,10 @@ class Net:
         """An output of a new node."""
         return _found(self.node(kind, inputs, **properties).outputs, output)
 
+    def find(self, kind: str) -> bpy.types.Node:
+        """The first node of a type, by Blender's name for it: "EMISSION"."""
+        return next(node for node in self.tree.nodes if node.type == kind)
+
     def set(self, socket: bpy.types.NodeSocket, value: object) -> None:
         """Link an output to an input, or store a value in it."""
         if isinstance(value, bpy.types.NodeSocket):

@@ -9,6 +9,9 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from .net import Net
+from .net import material as net_material
+
 RESOLUTION = 64
 DIFFUSE, GLOSSY, GLASS = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlass"
 PRINCIPLED, EMISSION = "ShaderNodeBsdfPrincipled", "ShaderNodeEmission"
@@ -40,55 +43,23 @@ def new_scene(resolution: int = RESOLUTION, world: float = 0.0) -> bpy.types.Sce
     scene.world = bpy.data.worlds.new("World")
     if scene.world.node_tree is None:
         scene.world.use_nodes = True
-    background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    background.inputs["Strength"].default_value = world
+    background().inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    background().inputs["Strength"].default_value = world
     return scene
 
 
 def material(shader: str, distribution: str | None = None, **inputs: float | Sequence[float]) -> bpy.types.Material:
     """One shader node on the surface output; inputs by socket name with _ for a space."""
-    made = _empty_material()
-    _connect(made, _shader(made, shader, distribution, inputs))
+    made, net = net_material("Material")
+    properties = {} if distribution is None else {"distribution": distribution}
+    given = {name.replace("_", " "): value for name, value in inputs.items()}
+    net.output(net.out(shader.removeprefix("ShaderNode"), 0, given, **properties))
     return made
 
 
-def glowing_diffuse(albedo: float, radiance: float) -> bpy.types.Material:
-    """Diffuse that emits as well, through Add Shader."""
-    made = _empty_material()
-    add = made.node_tree.nodes.new("ShaderNodeAddShader")
-    reflecting = _shader(made, DIFFUSE, None, {"Color": albedo})
-    shining = _shader(made, EMISSION, None, {"Color": 1.0, "Strength": radiance})
-    for part, socket in zip((reflecting, shining), add.inputs):
-        made.node_tree.links.new(part.outputs[0], socket)
-    _connect(made, add)
-    return made
-
-
-def _empty_material() -> bpy.types.Material:
-    made = bpy.data.materials.new("Material")
-    if made.node_tree is None:
-        made.use_nodes = True
-    made.node_tree.nodes.clear()
-    return made
-
-
-def _shader(made: bpy.types.Material, kind: str, distribution: str | None, inputs: dict) -> bpy.types.Node:
-    node = made.node_tree.nodes.new(kind)
-    if distribution is not None:
-        node.distribution = distribution
-    for name, value in inputs.items():
-        socket = node.inputs[name.replace("_", " ")]
-        if socket.type == "RGBA":
-            value = (value,) * 3 if np.isscalar(value) else tuple(value)
-            value = (*value, 1.0)
-        socket.default_value = value
-    return node
-
-
-def _connect(made: bpy.types.Material, node: bpy.types.Node) -> None:
-    output = made.node_tree.nodes.new("ShaderNodeOutputMaterial")
-    made.node_tree.links.new(node.outputs[0], output.inputs["Surface"])
+def background() -> bpy.types.Node:
+    """The Background of the current scene's world."""
+    return Net(bpy.context.scene.world.node_tree).find("BACKGROUND")
 
 
 def place(
@@ -176,3 +147,11 @@ def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) ->
     made = link_object(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
     bpy.context.scene.camera = made
     return made
+
+
+def orthographic_camera(scale: float, matrix: Matrix | None = None) -> bpy.types.Object:
+    """The scene's camera, which looks along its -Z at ``scale`` meters."""
+    data = bpy.data.cameras.new("Camera")
+    data.type, data.ortho_scale = "ORTHO", scale
+    bpy.context.scene.camera = link_object(data, matrix)
+    return bpy.context.scene.camera

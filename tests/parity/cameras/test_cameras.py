@@ -2,6 +2,7 @@
 """Panoramas, lenses, borders, shifts and clip distances, against Cycles."""
 
 import math
+from collections.abc import Callable
 
 import bpy
 import numpy as np
@@ -9,7 +10,20 @@ import pytest
 from support.families import some_each_time
 
 from ..engines import PIXEL_CENTERS, compare_with_cycles, cycles_channels, render_frame, stacked, unfilter
-from ..scenes import DIFFUSE, EMISSION, ball, box, camera, light, material, new_scene, place, plane
+from ..scenes import (
+    DIFFUSE,
+    EMISSION,
+    background,
+    ball,
+    box,
+    camera,
+    light,
+    link_object,
+    material,
+    new_scene,
+    place,
+    plane,
+)
 
 PHOTONS = {"photons": 4096, "photon_path_length": 6, "iterations": 12, "seeds": 2}
 """Settings with which the noise of a block is about a percent."""
@@ -127,7 +141,7 @@ CLIPPED = {
 def test_clip_distances(renderer, name):
     """Sides of the room nearer than 1.6 m or farther than 2.3 m are cut away."""
     data = room().data
-    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.02
+    background().inputs["Strength"].default_value = 0.02
     configure(data, CLIPPED[name] | {"clip_start": 1.6, "clip_end": 2.3})
     # All edges move together with the pixel filter.
     compare_with_cycles(renderer, f"clipped_{name}", 128, **PHOTONS | {"iterations": 64, "photons": 1024})
@@ -171,9 +185,8 @@ PROJECTIONS = {
 )
 def test_bokeh(renderer, projection, opening):
     bright_ball(**PROJECTIONS[projection], **OPENINGS[opening])
-    compare_with_cycles(
-        renderer, f"bokeh_{projection}_{opening}", 1024, photons=1024, photon_path_length=2, iterations=128, seeds=2
-    )
+    settings = {"photons": 1024, "photon_path_length": 2, "iterations": 128, "seeds": 2}
+    compare_with_cycles(renderer, f"bokeh_{projection}_{opening}", 1024, **settings)
 
 
 @pytest.mark.parametrize("transparent", [False, True])
@@ -215,66 +228,52 @@ def test_light_by_photons_alone(renderer):
     assert np.isfinite(pictures).all()
 
 
-def _mirrored(made: bpy.types.Object) -> None:
-    made.scale = (-1.0, 1.0, 1.0)
+def scaled(*scale: float, **properties: object) -> Callable:
+    def change(made: bpy.types.Object) -> None:
+        made.scale = scale
+        configure(made.data, properties)
+
+    return change
 
 
-def _upside_down(made: bpy.types.Object) -> None:
-    """All three axes mirrored, with a lens off its middle."""
-    made.scale, made.data.shift_x = (-2.0, -2.0, -2.0), 0.2
-
-
-def _mirrored_panorama(made: bpy.types.Object) -> None:
-    made.scale = (1.0, -1.0, 1.0)
-    made.data.type, made.data.panorama_type = "PANO", "EQUIRECTANGULAR"
-
-
-def _sheared(made: bpy.types.Object) -> None:
+def sheared(**properties: object) -> Callable:
     """As a child of what is scaled unevenly."""
-    parent = bpy.data.objects.new("Parent", None)
-    bpy.context.scene.collection.objects.link(parent)
-    parent.scale = (1.4, 1.0, 0.7)
-    made.parent, made.rotation_euler = parent, (1.3, 0.4, 0.6)
+
+    def change(made: bpy.types.Object) -> None:
+        made.parent, made.rotation_euler = link_object(None, name="Parent"), (1.3, 0.4, 0.6)
+        made.parent.scale = (1.4, 1.0, 0.7)
+        configure(made.data, properties)
+
+    return change
 
 
-def _sheared_orthographic(made: bpy.types.Object) -> None:
-    _sheared(made)
-    made.data.type, made.data.ortho_scale = "ORTHO", 2.0
+def through(kind: str) -> Callable:
+    """Another object in place of the camera: an empty or a light."""
+
+    def change(made: bpy.types.Object) -> None:
+        data = bpy.data.lights.new("Spot", "SPOT") if kind == "spot" else None
+        if data is not None:
+            data.spot_size, data.energy = 1.2, 0.0
+        bpy.context.scene.camera = link_object(data, made.matrix_world, kind)
+
+    return change
 
 
-def _sheared_panorama(made: bpy.types.Object) -> None:
-    _sheared(made)
-    made.data.type, made.data.panorama_type = "PANO", "EQUIRECTANGULAR"
+AROUND = {"type": "PANO", "panorama_type": "EQUIRECTANGULAR"}
+AS_THEY_COME = {
+    "mirrored": scaled(-1.0, 1.0, 1.0), "mirrored_panorama": scaled(1.0, -1.0, 1.0, **AROUND),
+    "upside_down": scaled(-2.0, -2.0, -2.0, shift_x=0.2),  # all three axes mirrored, with a lens off its middle
+    "sheared": sheared(), "sheared_orthographic": sheared(type="ORTHO", ortho_scale=2.0),
+    "sheared_panorama": sheared(**AROUND), "through_an_empty": through("empty"), "through_a_spot": through("spot"),
+}  # fmt: skip
 
 
-def _through_an_empty(made: bpy.types.Object) -> None:
-    _look_through(bpy.data.objects.new("Empty", None), made)
-
-
-def _through_a_spot(made: bpy.types.Object) -> None:
-    data = bpy.data.lights.new("Spot", "SPOT")
-    data.spot_size, data.energy = 1.2, 0.0
-    _look_through(bpy.data.objects.new("Spot", data), made)
-
-
-def _look_through(other: bpy.types.Object, made: bpy.types.Object) -> None:
-    other.matrix_world = made.matrix_world
-    bpy.context.scene.collection.objects.link(other)
-    bpy.context.scene.camera = other
-
-
-AS_THEY_COME = (
-    *(_mirrored, _upside_down, _mirrored_panorama, _sheared, _sheared_orthographic, _sheared_panorama),
-    *(_through_an_empty, _through_a_spot),
-)
-
-
-@pytest.mark.parametrize("change", AS_THEY_COME, ids=lambda change: change.__name__)
-def test_depth_of_cameras_as_they_come(renderer, change):
+@pytest.mark.parametrize("name", AS_THEY_COME)
+def test_depth_of_cameras_as_they_come(renderer, name):
     """Mirrored and sheared ones, and objects that are no cameras: the distance of what is seen in each pixel."""
     made = room()
     ball(0.3, material(DIFFUSE), place(at=(-0.6, 1.2, 0.4)))
-    change(made)
+    AS_THEY_COME[name](made)
     unfilter()
     bpy.context.view_layer.use_pass_z = True
     reference = cycles_channels()["Depth.Z"]

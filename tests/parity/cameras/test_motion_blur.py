@@ -12,7 +12,21 @@ from support.moving import animate, blur
 
 from ..comparison import CAUSTIC, CONVERGED, compare
 from ..engines import render_cycles
-from ..scenes import DIFFUSE, EMISSION, GLASS, GLOSSY, ball, box, camera, light, material, new_scene, place, plane
+from ..scenes import (
+    DIFFUSE,
+    EMISSION,
+    GLASS,
+    GLOSSY,
+    ball,
+    box,
+    camera,
+    light,
+    link_object,
+    material,
+    new_scene,
+    place,
+    plane,
+)
 from .moments import cycles_at_moments, render_blurred
 
 SETTINGS = {"photons": 2048, "photon_path_length": 5, "camera_path_length": 5, "iterations": 48, "seeds": 2}
@@ -115,8 +129,7 @@ def bend(owner: bpy.types.Object, how: str) -> None:
             point.co.y += 0.6 * point.co.x
         animate(key, "value", -1.0 if key.slider_min < 0 else 0.0, 0.5, 1.0)
         return
-    bones = bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones"))
-    bpy.context.scene.collection.objects.link(bones)
+    bones = link_object(bpy.data.armatures.new("Bones"))
     bpy.context.view_layer.objects.active = bones
     bpy.ops.object.mode_set(mode="EDIT")
     bone = bones.data.edit_bones.new("Bone")

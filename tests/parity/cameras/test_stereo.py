@@ -6,10 +6,9 @@ import numpy as np
 import OpenEXR
 import pytest
 
+from ..engines import unfilter
 from ..scenes import camera, material, new_scene, place, plane
 
-NOT_FILTERED = 0.01
-"""Pixels of a filter that looks through their middles."""
 EYES = ("left", "right")
 
 
@@ -24,11 +23,9 @@ def colored_squares() -> bpy.types.Scene:
     eyes = camera((0.3, -6.0, 0.4), (0.0, 0.0, 0.0), 40.0).data.stereo
     eyes.interocular_distance, eyes.convergence_distance = 0.4, 5.0
     scene.render.use_multiview = True
-    settings = scene.render.image_settings
-    settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
-    settings.views_format = "MULTIVIEW"
-    scene.cycles.samples, scene.cycles.pixel_filter_type, scene.cycles.filter_width = 1, "GAUSSIAN", NOT_FILTERED
+    scene.render.image_settings.views_format = "MULTIVIEW"
+    unfilter()
+    scene.cycles.samples = 1
     scene.rppm.samples, scene.rppm.photons, scene.rppm.filter_width = 1, 64, 0.0
     return scene
 

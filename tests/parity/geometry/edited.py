@@ -5,7 +5,8 @@ apart in which Blender's properties of a window alone differ."""
 import bmesh
 import bpy
 
-from ..scenes import EMISSION, camera, material, new_scene
+from ..net import Net
+from ..scenes import EMISSION, camera, link_object, material, mesh_object, new_scene
 
 BOX = (
     [(x, y, z) for x in (-0.7, 0.7) for y in (-0.5, 0.5) for z in (-0.4, 0.6)],
@@ -16,13 +17,8 @@ BOX = (
 def glowing_normals() -> bpy.types.Material:
     """Glows by its shading normal: half of it and a half."""
     made = material(EMISSION)
-    tree = made.node_tree
-    geometry, half = tree.nodes.new("ShaderNodeNewGeometry"), tree.nodes.new("ShaderNodeVectorMath")
-    half.operation = "MULTIPLY_ADD"
-    half.inputs[1].default_value = half.inputs[2].default_value = (0.5, 0.5, 0.5)
-    tree.links.new(geometry.outputs["Normal"], half.inputs[0])
-    emission = next(node for node in tree.nodes if node.type == "EMISSION")
-    tree.links.new(half.outputs[0], emission.inputs["Color"])
+    net = Net(made.node_tree)
+    net.set(net.find("EMISSION").inputs["Color"], net.scaled(net.out("NewGeometry", "Normal"), 0.5, 0.5))
     return made
 
 
@@ -39,16 +35,14 @@ def begin(case: str) -> bpy.types.Object:
 
 
 def add(name: str, shape: tuple[list, list], at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> bpy.types.Object:
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(shape[0], [], shape[1])
-    mesh.materials.append(glowing_normals())
-    return link(name, mesh, at)
+    made = mesh_object(*shape, glowing_normals(), name=name)
+    made.location = at
+    return made
 
 
 def link(name: str, data: bpy.types.ID | None, at: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> bpy.types.Object:
-    made = bpy.data.objects.new(name, data)
+    made = link_object(data, name=name)
     made.location = at
-    bpy.context.scene.collection.objects.link(made)
     return made
 
 

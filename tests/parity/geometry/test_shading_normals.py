@@ -10,7 +10,8 @@ from mathutils import Vector
 
 from ..comparison import Tolerance
 from ..engines import compare_with_cycles
-from ..scenes import DIFFUSE, GLASS, GLOSSY, PRINCIPLED, light, material, new_scene, place, plane
+from ..net import Net
+from ..scenes import DIFFUSE, GLASS, GLOSSY, PRINCIPLED, light, material, new_scene, orthographic_camera, place, plane
 
 COLOR = (0.8, 0.6, 0.4)
 SIZE = 6
@@ -19,7 +20,7 @@ NEAR = Tolerance(mean=0.01, block=0.03, mode=0.01)
 
 def toon(component: str) -> bpy.types.Material:
     made = material("ShaderNodeBsdfToon", Color=COLOR, Size=0.4, Smooth=0.3)
-    next(node for node in made.node_tree.nodes if node.type == "BSDF_TOON").component = component
+    Net(made.node_tree).find("BSDF_TOON").component = component
     return made
 
 
@@ -59,12 +60,8 @@ def ball_of_few_faces(surface: bpy.types.Material, x: float, z: float, subdivisi
 def look(scene: bpy.types.Scene, columns: int, rows: int) -> None:
     """A camera that looks along y at a grid of that many things, 16 pixels each."""
     scene.render.resolution_x, scene.render.resolution_y = 16 * columns, 16 * rows
-    data = bpy.data.cameras.new("Camera")
-    data.type, data.ortho_scale = "ORTHO", max(columns, rows)
-    made = bpy.data.objects.new("Camera", data)
+    made = orthographic_camera(max(columns, rows))
     made.location, made.rotation_euler = (0.0, -6.0, 0.0), (math.pi / 2, 0.0, 0.0)
-    scene.collection.objects.link(made)
-    scene.camera = made
 
 
 @pytest.mark.parametrize("side", ["front", "behind"])

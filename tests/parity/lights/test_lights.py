@@ -8,6 +8,7 @@ import pytest
 from support.families import some_each_time
 
 from ..engines import compare_with_cycles
+from ..net import Net
 from ..scenes import DIFFUSE, EMISSION, box, camera, light, material, new_scene, place, plane
 
 UP_TWO = {"at": (0.3, 0.2, 2.0)}
@@ -26,31 +27,21 @@ def _glowing_square():
 def _square_seen_by_no_ray():
     """Its nodes let it shine except along rays of any kind: where a light is sampled, there is none yet."""
     glow = material(EMISSION, Color=(1.0, 0.6, 0.3), Strength=20.0)
-    tree = glow.node_tree
-    path, none = tree.nodes.new("ShaderNodeLightPath"), tree.nodes.new("ShaderNodeMath")
-    none.operation = "MULTIPLY_ADD"
-    none.inputs[1].default_value, none.inputs[2].default_value = -20.0, 20.0
-    tree.links.new(path.outputs["Is Reflection Ray"], none.inputs[0])
-    tree.links.new(none.outputs[0], next(n for n in tree.nodes if n.type == "EMISSION").inputs["Strength"])
+    net = Net(glow.node_tree)
+    inputs = {0: net.out("LightPath", "Is Reflection Ray"), 1: -20.0, 2: 20.0}
+    net.set(net.find("EMISSION").inputs["Strength"], net.out("Math", 0, inputs, operation="MULTIPLY_ADD"))
     glow.cycles.emission_sampling = "FRONT_BACK"
     plane(0.4, glow, place(**TILTED))
 
 
+FACTORS = {
+    "normalize": False, "exposure": 1.5, "color": (1.0, 0.7, 0.5), "use_temperature": True, "temperature": 4000.0,
+}  # fmt: skip
 LIGHTS = {
     "point": _light("POINT", UP_TWO, shadow_soft_size=0.0),
     "point_soft": _light("POINT", UP_TWO, shadow_soft_size=0.5),
     "point_sphere": _light("POINT", UP_TWO, shadow_soft_size=0.5, use_soft_falloff=False),
-    "point_factors": _light(
-        "POINT",
-        UP_TWO,
-        energy=3.0,
-        shadow_soft_size=0.4,
-        normalize=False,
-        exposure=1.5,
-        color=(1.0, 0.7, 0.5),
-        use_temperature=True,
-        temperature=4000.0,
-    ),
+    "point_factors": _light("POINT", UP_TWO, energy=3.0, shadow_soft_size=0.4, **FACTORS),
     "spot": _light("SPOT", TILTED, shadow_soft_size=0.0, spot_size=math.radians(70.0), spot_blend=0.5),
     "spot_scaled": _light(
         "SPOT", TILTED | {"scale": (1.0, 1.6, 1.0)}, shadow_soft_size=0.2, spot_size=math.radians(50.0), spot_blend=0.8
@@ -104,6 +95,5 @@ def test_lamp_half_in_a_floor(renderer, name, mode):
     plane(2.0, gray)
     camera((0.0, -1.8, 1.0), (0.0, 2.0, 0.8), 90.0)
     CUT_LAMPS[name]()
-    compare_with_cycles(
-        renderer, f"lamp_in_a_floor_{name}_{mode.lower()}", 256, direct_light=mode, photons=32768, iterations=12
-    )
+    settings = {"direct_light": mode, "photons": 32768, "iterations": 12}
+    compare_with_cycles(renderer, f"lamp_in_a_floor_{name}_{mode.lower()}", 256, **settings)

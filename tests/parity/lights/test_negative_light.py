@@ -7,7 +7,8 @@ import pytest
 
 from ..comparison import Tolerance
 from ..engines import compare_with_cycles, render_rppm
-from ..scenes import DIFFUSE, EMISSION, PRINCIPLED, box, camera, light, material, new_scene, place, plane
+from ..net import Net
+from ..scenes import DIFFUSE, EMISSION, PRINCIPLED, background, box, camera, light, material, new_scene, place, plane
 
 COLOR = (-0.4, 0.2, 0.9)
 NEAR = Tolerance(mean=0.01, block=0.03, mode=0.01)
@@ -16,17 +17,10 @@ NEAR = Tolerance(mean=0.01, block=0.03, mode=0.01)
 def shining(shader: str, color: tuple[float, float, float]) -> bpy.types.Material:
     """Emission by a node, since sockets of colors hold no negative ones."""
     made = material(shader, **({"Base_Color": 0.0, "Emission_Strength": 1.0} if shader == PRINCIPLED else {}))
-    tree = made.node_tree
-    node = next(node for node in tree.nodes if node.type != "OUTPUT_MATERIAL")
-    combined = tree.nodes.new("ShaderNodeCombineXYZ")
-    for socket, value in zip(combined.inputs, color, strict=True):
-        socket.default_value = value
-    tree.links.new(combined.outputs[0], node.inputs["Color" if shader == EMISSION else "Emission Color"])
+    net = Net(made.node_tree)
+    kind, name = ("EMISSION", "Color") if shader == EMISSION else ("BSDF_PRINCIPLED", "Emission Color")
+    net.set(net.find(kind).inputs[name], net.out("CombineXYZ", 0, dict(enumerate(color))))
     return made
-
-
-def background() -> bpy.types.Node:
-    return next(node for node in bpy.context.scene.world.node_tree.nodes if node.type == "BACKGROUND")
 
 
 @pytest.mark.parametrize("shader", [EMISSION, PRINCIPLED])
@@ -59,7 +53,7 @@ def by_nodes_of_a_lamp() -> None:
     light("SUN", 3.0, place())
     made = light("POINT", 30.0, place(at=(0.0, 0.0, 1.2)), shadow_soft_size=0.2)
     made.data.use_nodes = True
-    next(node for node in made.data.node_tree.nodes if node.type == "EMISSION").inputs["Strength"].default_value = -1.0
+    Net(made.data.node_tree).find("EMISSION").inputs["Strength"].default_value = -1.0
 
 
 def by_an_even_world() -> None:
@@ -71,9 +65,8 @@ def by_a_world_of_both_signs() -> None:
     """Its directions are its color: of a red and green that is as often negative as not, nothing is left."""
     light("SUN", 1.0, place())
     background().inputs["Strength"].default_value = 1.0
-    tree = bpy.context.scene.world.node_tree
-    coordinates = tree.nodes.new("ShaderNodeTexCoord")
-    tree.links.new(coordinates.outputs["Generated"], background().inputs["Color"])
+    net = Net(bpy.context.scene.world.node_tree)
+    net.set(background().inputs["Color"], net.out("TexCoord", "Generated"))
 
 
 @pytest.mark.parametrize("take", [by_surface, by_lamps, by_nodes_of_a_lamp, by_an_even_world, by_a_world_of_both_signs])
@@ -92,6 +85,5 @@ def test_photons_take_light_away_in_a_room(renderer):
     camera((0.0, -1.9, 0.0), (0.0, 0.0, -0.3), 60.0)
     light("POINT", 100.0, place(at=(0.0, 0.0, 1.0)), shadow_soft_size=0.2)
     light("SPOT", -60.0, place(at=(0.8, 0.0, 1.0)), shadow_soft_size=0.1, spot_size=1.2)
-    compare_with_cycles(
-        renderer, "negative_room", 512, NEAR, seeds=2, iterations=64, photons=8192, photon_path_length=24
-    )
+    settings = {"seeds": 2, "iterations": 64, "photons": 8192, "photon_path_length": 24}
+    compare_with_cycles(renderer, "negative_room", 512, NEAR, **settings)

@@ -7,6 +7,7 @@ import pytest
 
 from ..comparison import CONVERGED, compare
 from ..engines import compare_with_cycles, render_cycles_over, render_rppm
+from ..net import Net
 from ..scenes import DIFFUSE, GLOSSY, ball, box, camera, light, material, new_scene, place, plane
 
 PATHS = {"photon_path_length": 6, "camera_path_length": 6}
@@ -56,10 +57,8 @@ def test_falloff_of_lights(renderer, kind, output, mode):
     made = light(kind, 40.0, place(at=(0.3, 0.2, 2.0)))
     if made.data.node_tree is None:
         made.data.use_nodes = True
-    tree = made.data.node_tree
-    falloff = tree.nodes.new("ShaderNodeLightFalloff")
-    falloff.inputs["Strength"].default_value = 0.8
-    tree.links.new(falloff.outputs[output], tree.nodes["Emission"].inputs["Strength"])
+    net = Net(made.data.node_tree)
+    net.set(net.find("EMISSION").inputs["Strength"], net.out("LightFalloff", output, {"Strength": 0.8}))
     compare_with_cycles(renderer, f"falloff_{kind.lower()}_{mode.lower()}", 256, **MODES[mode])
 
 

@@ -22,16 +22,8 @@ def test_mirror(renderer, mode):
     _floor_wall_and_light()
     mirror = material(GLOSSY, Color=(0.9, 0.8, 0.7), Roughness=0.0)
     plane(0.9, mirror, place(at=(0.0, 1.0, 1.0), turn=(70.0, 0.0, 10.0)))
-    compare_with_cycles(
-        renderer,
-        f"mirror_{mode.lower()}",
-        512,
-        direct_light=mode,
-        photons=32768,
-        photon_path_length=6,
-        iterations=64,
-        seeds=2,
-    )
+    settings = {"direct_light": mode, "photons": 32768, "photon_path_length": 6, "iterations": 64, "seeds": 2}
+    compare_with_cycles(renderer, f"mirror_{mode.lower()}", 512, **settings)
 
 
 @pytest.mark.parametrize("roughness", [0.2, *(pytest.param(more, marks=pytest.mark.long) for more in (0.5, 0.9))])

@@ -7,7 +7,8 @@ import pytest
 
 from ..comparison import Tolerance
 from ..engines import compare_with_cycles
-from ..scenes import DIFFUSE, EMISSION, PRINCIPLED, box, camera, light, material, new_scene, place, plane
+from ..net import Net
+from ..scenes import DIFFUSE, EMISSION, PRINCIPLED, background, box, camera, light, material, new_scene, place, plane
 
 NEAR = Tolerance(mean=0.01, block=0.03, mode=0.01)
 CLEAR = "ShaderNodeBsdfTransparent"
@@ -35,7 +36,7 @@ def diffuse_below_a_card_in_the_sun() -> None:
     plane(0.7, material(PRINCIPLED, Base_Color=0.8, Alpha=0.5), place(at=(0.0, 0.0, 1.0)))
     plane(0.4, material(CLEAR, Color=(0.9, 0.5, 0.2)), place(at=(0.5, 0.2, 0.6)))
     light("SUN", 3.0, place(turn=(20.0, 30.0, 0.0)), angle=0.02)
-    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.3
+    background().inputs["Strength"].default_value = 0.3
 
 
 def a_panel_that_shines_through_a_pane() -> None:
@@ -48,16 +49,12 @@ def card_for_cameras_alone() -> None:
     """Diffuse, but where a shadow ray asks."""
     floor(0.0, 0.5)
     made = material(DIFFUSE, Color=0.8)
-    tree = made.node_tree
-    mix, path, clear = (
-        tree.nodes.new(kind) for kind in ("ShaderNodeMixShader", "ShaderNodeLightPath", "ShaderNodeBsdfTransparent")
-    )
-    diffuse = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    tree.links.new(path.outputs["Is Shadow Ray"], mix.inputs[0])
-    tree.links.new(diffuse.outputs[0], mix.inputs[1])
-    tree.links.new(clear.outputs[0], mix.inputs[2])
-    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    net = Net(made.node_tree)
+    mix, path, clear = net.node("MixShader"), net.node("LightPath"), net.node("BsdfTransparent")
+    sources = path.outputs["Is Shadow Ray"], net.find("BSDF_DIFFUSE").outputs[0], clear.outputs[0]
+    for source, end in zip(sources, mix.inputs, strict=True):
+        net.set(end, source)
+    net.set(net.find("OUTPUT_MATERIAL").inputs["Surface"], mix.outputs[0])
     plane(1.2, made, place(at=(0.0, 0.5, 0.9)))
     light("SUN", 3.0, place(turn=(10.0, 0.0, 0.0)), angle=0.02)
 

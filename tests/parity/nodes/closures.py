@@ -20,7 +20,10 @@ from rppm_addon.materials.nodes.node_kinds import FLOAT
 from rppm_addon.materials.nodes.shaders import KINDS
 
 from ..engines import cycles_pass, unfilter
+from ..net import material
 from ..scenes import camera, light, new_scene, place, plane
+from .names import blender_node
+from .shader_runs import run_shader
 
 SIZE = 32
 ANGLE = 70.0
@@ -97,44 +100,31 @@ def _camera_rays(view: View) -> np.ndarray:
     return points
 
 
-def _material(kind: str, bl_idname: str, options: dict, inputs: dict, normal: tuple | None) -> bpy.types.Material:
-    made = bpy.data.materials.new("Material")
-    if made.node_tree is None:
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    node = tree.nodes.new(bl_idname)
-    for name, value in options.items():
-        setattr(node, name, value)
+def _material(kind: str, options: dict, inputs: dict, normal: tuple | None) -> bpy.types.Material:
+    made, net = material("Material")
+    node = net.node(blender_node(kind).removeprefix("ShaderNode"), **options)
     sockets = {socket.identifier.lower().replace(" ", "_"): socket for socket in node.inputs}
     sockets.pop("weight")
     assert set(KINDS[kind].inputs) == set(sockets), f"{kind}: {set(KINDS[kind].inputs) ^ set(sockets)}"
     for name, value in inputs.items():
-        socket = sockets[name]
-        if socket.type == "RGBA":
-            value = (*((value,) * 3 if np.isscalar(value) else value), 1.0)
-        socket.default_value = value
+        net.set(sockets[name], value)
     vectors = {"tangent": TANGENT} | ({"normal": normal} if normal else {})
     for name, vector in vectors.items():
         if name in sockets:
-            combine = tree.nodes.new("ShaderNodeCombineXYZ")
-            for socket, number in zip(combine.inputs, vector):
-                socket.default_value = number
-            tree.links.new(combine.outputs[0], sockets[name])
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(node.outputs[0], output.inputs["Surface"])
+            net.set(sockets[name], net.out("CombineXYZ", 0, dict(enumerate(vector))))
+    net.output(node.outputs[0])
     return made
 
 
 def by_cycles(
-    kind: str, bl_idname: str, view: View, options: dict, inputs: dict, normal: tuple | None = None
+    kind: str, view: View, options: dict, inputs: dict, normal: tuple | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Points (pixels, 3) of the plane, NaN where it is not seen, and their radiance (pixels, 3) for 1 W/sr."""
     scene = new_scene(SIZE)
     scene.cycles.max_bounces = 0
     unfilter()
     # No edge between triangles in sight.
-    plane(100.0, _material(kind, bl_idname, options, inputs, normal), place(at=(40.0, 10.0, 0.0)))
+    plane(100.0, _material(kind, options, inputs, normal), place(at=(40.0, 10.0, 0.0)))
     light("POINT", 4.0 * math.pi, place(at=view.light), shadow_soft_size=0.0)
     points = _camera_rays(view)
     return points, cycles_pass().astype(np.float64).reshape(-1, 3)
@@ -184,24 +174,12 @@ def by_closure(
     file.write_text(_SHADER.replace("CALL", node_call(kind, options)), encoding="utf-8")
     padded = np.zeros((len(points), 4), np.float32)
     padded[:, :3] = np.nan_to_num(points)
-    gl = library.context.moderngl
-    buffers = {
-        "Inputs": gl.buffer(node_inputs(kind, inputs).tobytes()),
-        "Points": gl.buffer(padded.tobytes()),
-        "Results": gl.buffer(reserve=16 * len(points)),
-        "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
-    }
+    arrays = {"Inputs": node_inputs(kind, inputs), "Points": padded, "AlbedoTables": albedo_tables.load()}
     normal = np.array(normal if normal else (0.0, 0.0, 1.0), float)
+    values = {
+        "viewer": view.camera, "count": len(points), "light": view.light, "choices": choices,
+        "normal": normal / np.linalg.norm(normal), "unused": 0,
+    }  # fmt: skip
     defines = {"ASHIKHMIN_LOBES": 1} if options.get("distribution") == "ASHIKHMIN_SHIRLEY" else {}
-    library.compute(str(file), defines).run(
-        len(points),
-        buffers,
-        {
-            "viewer": view.camera, "count": len(points), "light": view.light, "choices": choices,
-            "normal": normal / np.linalg.norm(normal), "unused": 0,
-        },
-    )  # fmt: skip
-    results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(-1, 4)[:, :3].astype(np.float64)
-    for buffer in buffers.values():
-        buffer.release()
-    return results
+    results = run_shader(library, file, len(points), arrays, 4, values, defines)
+    return results.reshape(-1, 4)[:, :3].astype(np.float64)

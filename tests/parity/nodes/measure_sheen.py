@@ -21,6 +21,7 @@ import numpy as np
 import OpenEXR
 from mathutils import Matrix, Vector
 
+from ..net import material
 from ..scenes import new_scene
 
 SIZE = 32
@@ -37,24 +38,11 @@ def _scene() -> tuple[bpy.types.Object, bpy.types.Object, bpy.types.Object]:
     scene.render.resolution_x = 4
     scene.cycles.samples, scene.cycles.max_bounces = 1, 0
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
-    made = bpy.data.materials.new("Sheen")
-    if made.node_tree is None:
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    coordinates, split, scale = map(tree.nodes.new, ("ShaderNodeTexCoord", "ShaderNodeSeparateXYZ", "ShaderNodeMath"))
-    sheen, output = tree.nodes.new("ShaderNodeBsdfSheen"), tree.nodes.new("ShaderNodeOutputMaterial")
-    sheen.distribution = "MICROFIBER"
-    sheen.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    scale.operation = "MULTIPLY_ADD"
-    scale.inputs[1].default_value, scale.inputs[2].default_value = 1.0 / (SIZE - 1), -0.5 / (SIZE - 1)
-    for start, end in (
-        (coordinates.outputs["Object"], split.inputs[0]),
-        (split.outputs["Y"], scale.inputs[0]),
-        (scale.outputs[0], sheen.inputs["Roughness"]),
-        (sheen.outputs[0], output.inputs["Surface"]),
-    ):
-        tree.links.new(start, end)
+    made, net = material("Sheen")
+    along = net.out("SeparateXYZ", "Y", {0: net.out("TexCoord", "Object")})
+    inputs = {0: along, 1: 1.0 / (SIZE - 1), 2: -0.5 / (SIZE - 1)}
+    roughness = net.out("Math", 0, inputs, operation="MULTIPLY_ADD")
+    net.output(net.out("BsdfSheen", 0, {"Color": 1.0, "Roughness": roughness}, distribution="MICROFIBER"))
     mesh = bpy.data.meshes.new("Plane")
     mesh.from_pydata([(-800, 0, 0), (800, 0, 0), (800, SIZE, 0), (-800, SIZE, 0)], [], [(0, 1, 2, 3)])
     mesh.materials.append(made)

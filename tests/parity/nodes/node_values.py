@@ -11,12 +11,15 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.materials.nodes.node_kinds import FLOAT, NodeKind
 
 from ..engines import cycles_channels, unfilter
-from ..scenes import new_scene
+from ..net import Net, material
+from ..scenes import mesh_object, new_scene, orthographic_camera
+from .shader_runs import run_shader
 
 RESOLUTION = 48
 CORNERS = [(-2.1, -1.9, 0.3), (2.0, -2.05, 1.9), (2.2, 1.95, -0.4), (-1.9, 2.1, -2.0)]
@@ -55,20 +58,16 @@ def _set(node: bpy.types.Node, case: NodeCase) -> None:
 class _Passes:
     """Sockets of a material that are written to passes of the picture."""
 
-    def __init__(self, tree: bpy.types.NodeTree) -> None:
-        self.tree = tree
+    def __init__(self, net: Net) -> None:
+        self.net = net
         self.count = 0
 
     def add(self, socket: bpy.types.NodeSocket) -> str:
         name = f"pass_{self.count:04d}"
         self.count += 1
-        is_float = socket.type == "VALUE"
         made = bpy.context.view_layer.aovs.add()
-        made.name = name
-        made.type = "VALUE" if is_float else "COLOR"
-        output = self.tree.nodes.new("ShaderNodeOutputAOV")
-        output.aov_name = name
-        self.tree.links.new(socket, output.inputs["Value" if is_float else "Color"])
+        made.name, made.type = name, "VALUE" if socket.type == "VALUE" else "COLOR"
+        self.net.node("OutputAOV", {made.type.capitalize(): socket}, aov_name=name)
         return name
 
 
@@ -87,34 +86,13 @@ def cycles_values(
 
     More cases in one picture do not fit the stack of Cycles' virtual machine.
     """
-    scene = new_scene(RESOLUTION)
-    mesh = bpy.data.meshes.new("Plane")
-    mesh.from_pydata(CORNERS, [], [(0, 1, 2, 3)])
-    scene.collection.objects.link(bpy.data.objects.new("Plane", mesh))
-    data = bpy.data.cameras.new("Camera")
-    data.type, data.ortho_scale = "ORTHO", 3.7
-    scene.camera = bpy.data.objects.new("Camera", data)
-    scene.camera.location.z = 5.0
-    scene.collection.objects.link(scene.camera)
-
-    material = bpy.data.materials.new("Values")
-    if material.node_tree is None:
-        material.use_nodes = True
-    tree = material.node_tree
-    tree.nodes.clear()
-    mesh.materials.append(material)
-    geometry = tree.nodes.new("ShaderNodeNewGeometry")
-    moved = tree.nodes.new("ShaderNodeVectorMath")
-    moved.inputs[1].default_value = tuple(shift)
-    tree.links.new(geometry.outputs["Position"], moved.inputs[0])
-    vector = moved.outputs[0]
-    product = tree.nodes.new("ShaderNodeVectorMath")
-    product.operation = "DOT_PRODUCT"
-    product.inputs[1].default_value = (0.7, -0.9, 0.4)
-    tree.links.new(vector, product.inputs[0])
-    w = product.outputs["Value"]
-
-    passes = _Passes(tree)
+    new_scene(RESOLUTION)
+    made, net = material("Values")
+    mesh_object(CORNERS, [(0, 1, 2, 3)], made)
+    orthographic_camera(3.7, Matrix.Translation((0.0, 0.0, 5.0)))
+    vector = net.out("VectorMath", 0, {0: net.out("NewGeometry", "Position"), 1: tuple(shift)})
+    w = net.out("VectorMath", "Value", {0: vector, 1: (0.7, -0.9, 0.4)}, operation="DOT_PRODUCT")
+    passes, tree = _Passes(net), net.tree
     vector_pass, w_pass = passes.add(vector), passes.add(w)
     names = []
     for case in cases:
@@ -124,8 +102,7 @@ def cycles_values(
             if socket.identifier in ("Vector", "W"):
                 tree.links.new(vector if socket.identifier == "Vector" else w, socket)
         names.append({our_name(s.identifier): passes.add(s) for s in node.outputs if s.enabled})
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(tree.nodes.new("ShaderNodeEmission").outputs[0], output.inputs["Surface"])
+    net.output(net.out("Emission"))
     unfilter()
     channels = cycles_channels()
     results = [{name: _pass(channels, given) for name, given in case.items()} for case in names]
@@ -188,21 +165,16 @@ def our_values(
     function, literals = kind.call(name, case.options)
     path = folder / f"{function}.comp"
     path.write_text(call_shader(function, kind, len(literals)), encoding="utf-8")
-    gl = library.context.moderngl
     unknown = case.inputs.keys() - kind.inputs.keys()
     assert not unknown, f"{name} has no input {unknown}"
     constants = [np.ravel(case.inputs.get(g, d)) for g, (_, d) in kind.inputs.items() if g not in ("vector", "w")]
     count, width = len(w), sum(1 if socket is FLOAT else 3 for socket in kind.outputs.values())
-    buffers = {
-        "Coordinates": gl.buffer(np.concatenate([vector.reshape(-1), w]).astype(np.float32).tobytes()),
-        "Constants": gl.buffer(np.concatenate([*constants, [0.0]]).astype(np.float32).tobytes()),
-        "Results": gl.buffer(reserve=4 * width * count),
-        "Options": gl.buffer(np.array([*map(int, literals), 0], np.int32).tobytes()),
+    arrays = {
+        "Coordinates": np.concatenate([vector.reshape(-1), w]).astype(np.float32),
+        "Constants": np.concatenate([*constants, [0.0]]).astype(np.float32),
+        "Options": np.array([*map(int, literals), 0], np.int32),
     }
-    library.compute(str(path)).run(count, buffers)
-    table = np.frombuffer(buffers["Results"].read(), np.float32).reshape(width, count)
-    for buffer in buffers.values():
-        buffer.release()
+    table = run_shader(library, path, count, arrays, width).reshape(width, count)
     values, place = {}, 0
     for output, socket in kind.outputs.items():
         size = 1 if socket is FLOAT else 3

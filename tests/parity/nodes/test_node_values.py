@@ -11,6 +11,7 @@ from mathutils import Matrix
 from rppm_addon.materials.nodes import color, curves, math, spectrum, view
 from rppm_addon.materials.nodes.node_kinds import BOOLEAN
 
+from .names import blender_node
 from .value_grids import (
     CAMERA_MATRIX,
     OBJECT_MATRIX,
@@ -28,17 +29,10 @@ FEW = (-2.0, 0.0, 0.3, 1.0, 4.5)
 
 
 KINDS = math.KINDS | color.KINDS | curves.KINDS | view.KINDS | spectrum.KINDS
-BLENDER_NODES = {
-    "rgb_to_bw": "RGBToBW", "separate_xyz": "SeparateXYZ", "combine_xyz": "CombineXYZ", "val_to_rgb": "ValToRGB",
-    "rgb_curve": "RGBCurve", "mix_rgb": "MixRGB", "map_range_vector": "MapRange", "mix_float": "Mix",
-    "mix_vector": "Mix", "mix_vector_non_uniform": "Mix", "mix_color": "Mix",
-}  # fmt: skip
-"""Blender's names of nodes where they do not follow from those of our kinds."""
 
 
 def case(name: str, inputs: dict[str, np.ndarray], options: dict | None = None, **members: object) -> Case:
-    node = BLENDER_NODES.get(name, "".join(word.capitalize() for word in name.split("_")))
-    return Case(name, KINDS[name], f"ShaderNode{node}", inputs, options or {}, **members)
+    return Case(name, KINDS[name], blender_node(name), inputs, options or {}, **members)
 
 
 def math_cases() -> list[Case]:

@@ -20,17 +20,8 @@ TABLES = 0.016
 F82_FOR_CONDUCTORS = 0.03
 """Between normal incidence and 82 degrees the F82 curve is not the conductor's."""
 
-BL_IDNAMES = {
-    "bsdf_diffuse": "ShaderNodeBsdfDiffuse",
-    "bsdf_translucent": "ShaderNodeBsdfTranslucent",
-    "bsdf_glossy": "ShaderNodeBsdfAnisotropic",
-    "bsdf_glass": "ShaderNodeBsdfGlass",
-    "bsdf_refraction": "ShaderNodeBsdfRefraction",
-    "bsdf_sheen": "ShaderNodeBsdfSheen",
-    "bsdf_metallic": "ShaderNodeBsdfMetallic",
-    "bsdf_principled": "ShaderNodeBsdfPrincipled",
-    "subsurface_scattering": "ShaderNodeSubsurfaceScattering",
-}
+
+both_views = pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
 
 
 def brightest_beside(pixels: np.ndarray) -> np.ndarray:
@@ -48,7 +39,7 @@ def assert_alike(
 
     The neighbors count because Cycles looks anywhere in a pixel's middle hundredth.
     """
-    points, cycles = closures.by_cycles(kind, BL_IDNAMES[kind], view, options, inputs, normal)
+    points, cycles = closures.by_cycles(kind, view, options, inputs, normal)
     with library.context.moderngl:
         ours = closures.by_closure(library, folder, kind, view, points, options, inputs, normal, choices)
     seen = np.isfinite(points).all(axis=1)
@@ -111,7 +102,7 @@ SINGLE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
+@both_views
 @pytest.mark.parametrize("name", SINGLE)
 def test_single_lobes(library, folder, name, view):
     kind, options, inputs = SINGLE[name]
@@ -137,7 +128,7 @@ def test_refraction_and_translucency(library, folder, view):
     assert_alike(library, folder, "bsdf_translucent", view, {}, {"color": COLOR}, EXACT)
 
 
-@pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
+@both_views
 def test_physical_conductor(library, folder, view):
     options = {"distribution": "MULTI_GGX", "fresnel_type": "PHYSICAL_CONDUCTOR"}
     assert_alike(library, folder, "bsdf_metallic", view, options, {"roughness": 0.6}, F82_FOR_CONDUCTORS)
@@ -164,7 +155,7 @@ def test_principled_layers(library, folder, name, distribution, view):
     assert_alike(library, folder, "bsdf_principled", view, {"distribution": distribution}, inputs, TABLES)
 
 
-@pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
+@both_views
 def test_all_of_principled(library, folder, view):
     """Six lobes, of which the closure holds three: choices make the mean."""
     inputs = {
@@ -186,7 +177,7 @@ MAPPED = {
 }
 
 
-@pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
+@both_views
 @pytest.mark.parametrize("name", MAPPED)
 def test_normals(library, folder, name, view):
     """A normal off the surface's own, which diffuse light is shadowed for."""
@@ -198,13 +189,13 @@ def test_translucency_with_a_normal(library, folder):
     assert_alike(library, folder, "bsdf_translucent", THROUGH, {}, {"color": COLOR}, EXACT, TILTED)
 
 
-@pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
+@both_views
 def test_normals_are_bent_until_they_reflect(library, folder, view):
     inputs = {"roughness": 0.5}
     assert_alike(library, folder, "bsdf_glossy", view, {"distribution": "GGX"}, inputs, EXACT, BENT)
 
 
-@pytest.mark.parametrize("view", [ABOVE, GRAZING], ids=["above", "grazing"])
+@both_views
 def test_layers_with_a_normal(library, folder, view):
     """The coat keeps the surface's normal, the sheen is between both."""
     inputs = {"base_color": COLOR, "coat_weight": 0.5, "coat_roughness": 0.4, "sheen_weight": 0.7}
@@ -227,7 +218,7 @@ def test_thin_films(library, folder, name, thickness):
     """
     kind, inputs = FILMS[name]
     inputs = inputs | {"thin_film_thickness": thickness}
-    points, cycles = closures.by_cycles(kind, BL_IDNAMES[kind], ABOVE, {"distribution": "GGX"}, inputs)
+    points, cycles = closures.by_cycles(kind, ABOVE, {"distribution": "GGX"}, inputs)
     with library.context.moderngl:
         ours = closures.by_closure(library, folder, kind, ABOVE, points, {"distribution": "GGX"}, inputs, choices=1)
     seen = np.isfinite(points).all(axis=1)

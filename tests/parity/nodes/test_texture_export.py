@@ -5,6 +5,7 @@ import bpy
 import pytest
 
 from ..engines import compare_with_cycles
+from ..net import material
 from ..scenes import camera, new_scene, place, plane
 
 TILES = [
@@ -29,18 +30,12 @@ TILES = [
 
 def _material(kind: str, output: str, properties: dict, inputs: dict) -> bpy.types.Material:
     """Return a material that emits the texture's output as light."""
-    made = bpy.data.materials.new(kind)
-    if made.node_tree is None:
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    texture, emission, surface = (tree.nodes.new(f"ShaderNode{name}") for name in (kind, "Emission", "OutputMaterial"))
-    for name, value in properties.items():
-        setattr(texture, name, value)
+    made, net = material(kind)
+    texture, emission, surface = net.node(kind, **properties), net.node("Emission"), net.node("OutputMaterial")
     for name, value in inputs.items():
         next(socket for socket in texture.inputs if socket.identifier == name).default_value = value
-    tree.links.new(texture.outputs[output], emission.inputs["Color"])
-    tree.links.new(emission.outputs[0], surface.inputs["Surface"])
+    net.set(emission.inputs["Color"], texture.outputs[output])
+    net.set(surface.inputs["Surface"], emission.outputs[0])
     return made
 
 

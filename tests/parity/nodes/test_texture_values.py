@@ -3,13 +3,14 @@
 
 import itertools
 
-import bpy
 import numpy as np
 import pytest
 
 from rppm_addon.materials.nodes.node_kinds import BOOLEAN, FLOAT
 from rppm_addon.materials.nodes.textures import KINDS
 
+from ..net import material
+from .names import blender_node
 from .node_values import NodeCase, cycles_values, our_name, our_values
 
 TOLERANCE = 1e-4
@@ -23,16 +24,11 @@ BRICK_PROPERTIES = {"offset", "offset_frequency", "squash", "squash_frequency"}
 """Properties of the node in Blender, inputs of our kind."""
 
 
-def node_name(kind: str) -> str:
-    """Blender's bl_idname."""
-    return "ShaderNode" + "".join(word.capitalize() for word in kind.split("_"))
-
-
 def combinations(kind: str, inputs: list[dict], **options) -> list[NodeCase]:
     """All combinations of the options, all values of those not given, each with all sets of inputs."""
     values = {name: options.get(name, all_values) for name, all_values in KINDS[kind].options.items()}
     chosen = [dict(zip(values, combination)) for combination in itertools.product(*values.values())]
-    return [NodeCase(node_name(kind), choice, given) for choice in chosen for given in inputs]
+    return [NodeCase(blender_node(kind), choice, given) for choice in chosen for given in inputs]
 
 
 def assert_equal_values(library, folder, kind: str, cases: list[NodeCase], shift=(0.0, 0.0, 0.0)) -> None:
@@ -62,10 +58,8 @@ def assert_equal_values(library, folder, kind: str, cases: list[NodeCase], shift
 @pytest.mark.parametrize("kind", KINDS)
 def test_kinds_are_those_of_blender(kind):
     """Names and defaults of sockets, options and their values."""
-    material = bpy.data.materials.new("Kinds")
-    if material.node_tree is None:
-        material.use_nodes = True
-    node = material.node_tree.nodes.new(node_name(kind))
+    _, net = material("Kinds")
+    node = net.tree.nodes.new(blender_node(kind))
     known = KINDS[kind]
     properties = BRICK_PROPERTIES if kind == "tex_brick" else set()
     assert known.inputs.keys() - properties == {our_name(socket.identifier) for socket in node.inputs}
@@ -101,33 +95,28 @@ NOISE_INPUTS = [
 ]
 
 
+NOISE_EXTREMES = [
+    {"lacunarity": 0.0}, {"roughness": 0.0}, {"detail": 0.0}, {"detail": 7.5, "roughness": 1.0}, {"scale": 0.0},
+]  # fmt: skip
+
+
 @pytest.mark.parametrize("dimensions", ["1D", "2D", "3D", "4D"])
 def test_noise(library, tmp_path, dimensions):
     chosen = {"noise_dimensions": (dimensions,)}
     cases = combinations("tex_noise", NOISE_INPUTS, **chosen, normalize=(True,))
     cases += combinations("tex_noise", NOISE_INPUTS[:2], **chosen, noise_type=("FBM",), normalize=(False,))
-    cases += combinations(
-        "tex_noise",
-        [{"lacunarity": 0.0}, {"roughness": 0.0}, {"detail": 0.0}, {"detail": 7.5, "roughness": 1.0}, {"scale": 0.0}],
-        **chosen,
-        noise_type=("FBM", "HYBRID_MULTIFRACTAL"),
-        normalize=(True,),
-    )
+    octaves = chosen | {"noise_type": ("FBM", "HYBRID_MULTIFRACTAL"), "normalize": (True,)}
+    cases += combinations("tex_noise", NOISE_EXTREMES, **octaves)
     assert_equal_values(library, tmp_path, "tex_noise", cases)
 
 
 VORONOI_INPUTS = [
     {"exponent": 0.7},
     {
-        "scale": -2.3,
-        "detail": 1.6,
-        "roughness": 0.7,
-        "lacunarity": 2.3,
-        "smoothness": 0.6,
-        "exponent": 1.7,
+        "scale": -2.3, "detail": 1.6, "roughness": 0.7, "lacunarity": 2.3, "smoothness": 0.6, "exponent": 1.7,
         "randomness": 0.8,
     },
-]
+]  # fmt: skip
 VORONOI_EXTREMES = [
     {"smoothness": 0.0},
     {"randomness": 0.0, "smoothness": 0.0},
@@ -146,14 +135,8 @@ def test_voronoi(library, tmp_path, dimensions):
     chosen = {"voronoi_dimensions": (dimensions,)}
     cases = combinations("tex_voronoi", VORONOI_INPUTS, **chosen, feature=("F1", "F2", "SMOOTH_F1"), normalize=(True,))
     cases += combinations("tex_voronoi", VORONOI_INPUTS, **chosen, distance=("EUCLIDEAN",), normalize=(False,))
-    cases += combinations(
-        "tex_voronoi",
-        [{"exponent": 0.2}, {"exponent": 5.0}],
-        **chosen,
-        distance=("MINKOWSKI",),
-        feature=("F1", "F2"),
-        normalize=(True,),
-    )
+    minkowski = chosen | {"distance": ("MINKOWSKI",), "feature": ("F1", "F2")}
+    cases += combinations("tex_voronoi", [{"exponent": 0.2}, {"exponent": 5.0}], **minkowski, normalize=(True,))
     cases += combinations("tex_voronoi", VORONOI_EXTREMES, **chosen, distance=("EUCLIDEAN",), normalize=(True,))
     assert_equal_values(library, tmp_path, "tex_voronoi", cases)
 
@@ -161,14 +144,10 @@ def test_voronoi(library, tmp_path, dimensions):
 WAVE_INPUTS = [
     {},
     {
-        "scale": -1.3,
-        "distortion": 2.5,
-        "detail": 2.6,
-        "detail_scale": 1.7,
-        "detail_roughness": 0.7,
+        "scale": -1.3, "distortion": 2.5, "detail": 2.6, "detail_scale": 1.7, "detail_roughness": 0.7,
         "phase_offset": 1.1,
     },
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("profile", ["SIN", "SAW", "TRI"])
@@ -202,23 +181,13 @@ def test_checker(library, tmp_path):
 BRICK_INPUTS = [
     {},
     {
-        "scale": -2.3,
-        "bias": 0.3,
-        "mortar_size": 0.05,
-        "mortar_smooth": 0.6,
-        "brick_width": 0.8,
-        "row_height": 0.3,
-        "color1": (0.9, 0.2, 0.1),
-        "color2": (0.1, 0.8, 0.5),
-        "mortar": (0.0, 0.4, 1.0),
-        "offset": 0.3,
-        "offset_frequency": 3,
-        "squash": 1.6,
-        "squash_frequency": 2,
+        "scale": -2.3, "bias": 0.3, "mortar_size": 0.05, "mortar_smooth": 0.6, "brick_width": 0.8, "row_height": 0.3,
+        "color1": (0.9, 0.2, 0.1), "color2": (0.1, 0.8, 0.5), "mortar": (0.0, 0.4, 1.0),
+        "offset": 0.3, "offset_frequency": 3, "squash": 1.6, "squash_frequency": 2,
     },
     {"scale": 50.0, "mortar_smooth": 0.0, "bias": -0.5},
     {"scale": 3.0, "mortar_size": 0.125, "mortar_smooth": 1.0, "offset_frequency": 1, "squash": 0.4},
-]
+]  # fmt: skip
 
 
 def test_brick(library, tmp_path):
@@ -262,7 +231,7 @@ def test_gabor(library, tmp_path):
 def test_gabor_along_z_is_finite(library, tmp_path):
     """Cycles divides zero by zero where directions turned at random start from the z axis."""
     case = NodeCase(
-        node_name("tex_gabor"), {"gabor_type": "3D"}, {"anisotropy": 0.5, "orientation_3d": (0.0, 0.0, 1.0)}
+        blender_node("tex_gabor"), {"gabor_type": "3D"}, {"anisotropy": 0.5, "orientation_3d": (0.0, 0.0, 1.0)}
     )
     coordinates = np.random.default_rng(1).uniform(-3.0, 3.0, (4096, 3)).astype(np.float32)
     with library.context.moderngl:

@@ -13,6 +13,7 @@ from rppm_addon.materials import albedo_tables
 
 from . import closures
 from .closures import View
+from .shader_runs import run_shader
 
 MEASURED = json.loads((Path(__file__).parent / "thin_wall.json").read_text(encoding="utf-8"))
 (POINTS,), (CAMERAS,), (LIGHTS,) = MEASURED["points"], MEASURED["cameras"], MEASURED["lights"]
@@ -94,26 +95,15 @@ def shares(library, folder, case: dict, seen_by_camera: bool) -> np.ndarray:
     file = folder / "sheet.comp"
     call = closures.node_call("bsdf_principled", OPTIONS)
     file.write_text(_SHADER.replace("CALL", call), encoding="utf-8")
-    cosines, gl = np.array(case["cosines"], np.float32), library.context.moderngl
+    cosines = np.array(case["cosines"], np.float32)
     inputs = closures.node_inputs("bsdf_principled", case["inputs"] | {"roughness": 0.0})
+    arrays = {"Cosines": cosines, "Inputs": inputs, "AlbedoTables": albedo_tables.load()}
+    values = {
+        "count": len(cosines), "seen_by_camera": seen_by_camera, "below": case["camera"] == "below", "unused": 0,
+    }  # fmt: skip
     with library.context.moderngl:
-        buffers = {
-            "Cosines": gl.buffer(cosines.tobytes()),
-            "Inputs": gl.buffer(inputs.tobytes()),
-            "Results": gl.buffer(reserve=48 * len(cosines)),
-            "AlbedoTables": gl.buffer(albedo_tables.load().tobytes()),
-        }
-        values = {
-            "count": len(cosines),
-            "seen_by_camera": seen_by_camera,
-            "below": case["camera"] == "below",
-            "unused": 0,
-        }
-        library.compute(str(file)).run(len(cosines), buffers, values)
-        results = np.frombuffer(buffers["Results"].read(), np.float32).reshape(-1, 3, 4).astype(np.float64)
-        for buffer in buffers.values():
-            buffer.release()
-    return results
+        results = run_shader(library, file, len(cosines), arrays, 12, values)
+    return results.reshape(-1, 3, 4).astype(np.float64)
 
 
 @pytest.mark.parametrize("case", named(MEASURED["shares"]))

@@ -25,7 +25,8 @@ from rppm_addon.materials.nodes.node_kinds import FLOAT, NodeKind
 from rppm_addon.scene.node_graphs import Link, ShaderNode
 
 from ..engines import cycles_channels, unfilter
-from ..scenes import new_scene
+from ..net import material
+from ..scenes import link_object, new_scene, orthographic_camera
 
 SAMPLE_SIZE = 0.02
 SCENE_MATRIX = Matrix.Translation((3.0, -2.0, 5.0)) @ Matrix.Rotation(np.pi / 2, 4, "Z")
@@ -109,12 +110,8 @@ def _socket(sockets: bpy.types.bpy_prop_collection, case: Case, name: str) -> bp
 
 def _material(case: Case) -> bpy.types.Material:
     """The case's node between attributes of the faces and shader AOVs."""
-    made = bpy.data.materials.new(case.name)
-    if made.node_tree is None:
-        made.use_nodes = True
-    tree = made.node_tree
-    tree.nodes.clear()
-    node = tree.nodes.new(case.blender_node)
+    made, net = material(case.name)
+    node = net.tree.nodes.new(case.blender_node)
     own = {name: value for name, value in case.options.items() if hasattr(node, name)}
     for name, value in {**own, **case.properties}.items():
         setattr(node, name, value)
@@ -125,9 +122,8 @@ def _material(case: Case) -> bpy.types.Material:
             continue
         socket = _socket(node.inputs, case, name)
         if name in case.inputs:
-            attribute = tree.nodes.new("ShaderNodeAttribute")
-            attribute.attribute_name = f"{'float' if socket_type is FLOAT else 'vector'}_{index}"
-            tree.links.new(attribute.outputs["Fac" if socket_type is FLOAT else "Vector"], socket)
+            label, output = ("float", "Fac") if socket_type is FLOAT else ("vector", "Vector")
+            net.set(socket, net.out("Attribute", output, attribute_name=f"{label}_{index}"))
         elif default is not None:
             if socket_type is FLOAT:
                 socket.default_value = default
@@ -135,19 +131,15 @@ def _material(case: Case) -> bpy.types.Material:
                 channels = default if isinstance(default, tuple) else (default,) * 3
                 socket.default_value = (*channels, 1.0)[: len(socket.default_value)]
     for index, name in enumerate(case.compared):
-        aov = tree.nodes.new("ShaderNodeOutputAOV")
-        is_float = case.kind.outputs[name] is FLOAT
-        aov.aov_name = f"{'float' if is_float else 'vector'}_{index}"
-        tree.links.new(_socket(node.outputs, case, name), aov.inputs["Value" if is_float else "Color"])
+        label, member = ("float", "Value") if case.kind.outputs[name] is FLOAT else ("vector", "Color")
+        aov = net.node("OutputAOV", {member: _socket(node.outputs, case, name)}, aov_name=f"{label}_{index}")
     exporter = GraphExporter(case.name, ExportContext(Report()))
-    link = exporter.value(aov.inputs["Value" if is_float else "Color"], ())
+    link = exporter.value(aov.inputs[member], ())
     case.exported = exporter.graph.nodes[link.node]
     case.idle = {
         name for name in case.inputs if case.sockets.get(name, name) and not _socket(node.inputs, case, name).enabled
     }
-    emission = tree.nodes.new("ShaderNodeEmission")
-    output = tree.nodes.new("ShaderNodeOutputMaterial")
-    tree.links.new(emission.outputs[0], output.inputs["Surface"])
+    net.output(net.out("Emission"))
     return made
 
 
@@ -198,15 +190,8 @@ def cycles_values(cases: Sequence[Case]) -> list[dict[str, np.ndarray]]:
     total = sum(case.count for case in cases)
     columns = int(np.ceil(np.sqrt(total)))
     scene = new_scene(columns)
-    samples = bpy.data.objects.new("Samples", _mesh(cases, columns))
-    samples.matrix_world = OBJECT_MATRIX
-    scene.collection.objects.link(samples)
-    camera = bpy.data.cameras.new("Camera")
-    camera.type, camera.ortho_scale = "ORTHO", SAMPLE_SIZE * columns
-    scene.camera = bpy.data.objects.new("Camera", camera)
-    scene.camera.matrix_world = CAMERA_MATRIX
-    camera.clip_start = 0.1
-    scene.collection.objects.link(scene.camera)
+    link_object(_mesh(cases, columns), OBJECT_MATRIX)
+    orthographic_camera(SAMPLE_SIZE * columns, CAMERA_MATRIX).data.clip_start = 0.1
     unfilter()
     aovs = set()
     for case in cases:

@@ -8,7 +8,8 @@ from support.baking import add_uv_map, bake
 
 from ..comparison import Tolerance, compare
 from ..engines import FIRST_SEED
-from ..scenes import DIFFUSE, GLASS, ball, box, camera, light, material, new_scene, place, plane
+from ..net import Net
+from ..scenes import DIFFUSE, GLASS, background, ball, box, camera, light, material, new_scene, place, plane
 
 SIZE = 32
 DATA = ("EMIT", "UV", "NORMAL", "POSITION", "ENVIRONMENT")
@@ -23,14 +24,10 @@ def in_blender(registered):
 
 def shining(**inputs):
     """A varnished material that glows in checks over its UV map."""
-    made = material("ShaderNodeBsdfPrincipled", **inputs)
-    tree = made.node_tree
-    checks, uv = tree.nodes.new("ShaderNodeTexChecker"), tree.nodes.new("ShaderNodeUVMap")
-    checks.inputs["Scale"].default_value = 6.0
-    tree.links.new(uv.outputs["UV"], checks.inputs["Vector"])
-    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    tree.links.new(checks.outputs["Color"], shader.inputs["Emission Color"])
-    shader.inputs["Emission Strength"].default_value = 0.5
+    made = material("ShaderNodeBsdfPrincipled", Emission_Strength=0.5, **inputs)
+    net = Net(made.node_tree)
+    checks = net.out("TexChecker", "Color", {"Vector": net.out("UVMap"), "Scale": 6.0})
+    net.set(net.find("BSDF_PRINCIPLED").inputs["Emission Color"], checks)
     return made
 
 
@@ -68,11 +65,8 @@ def both(scene, baked, kind, **arguments):
 @pytest.mark.parametrize("kind", DATA)
 def test_data_is_that_of_cycles(kind):
     scene, _, crate = room()
-    sky = scene.world.node_tree
-    background = next(node for node in sky.nodes if node.type == "BACKGROUND")
-    clouds = sky.nodes.new("ShaderNodeTexNoise")
-    clouds.inputs["Scale"].default_value, clouds.inputs["Detail"].default_value = 1.5, 0.0
-    sky.links.new(clouds.outputs["Color"], background.inputs["Color"])
+    sky = Net(scene.world.node_tree)
+    sky.set(background().inputs["Color"], sky.out("TexNoise", "Color", {"Scale": 1.5, "Detail": 0.0}))
     mine, theirs = both(scene, crate, kind, normal_space="OBJECT")
     np.testing.assert_allclose(mine, theirs, atol=2e-3 if kind == "ENVIRONMENT" else 1e-4)
 
@@ -87,10 +81,7 @@ def test_normals_in_tangent_space_are_those_of_cycles():
 def test_colors_are_those_of_cycles():
     scene, _, crate = room()
     for kind in ("DIFFUSE", "GLOSSY"):
-        mine, theirs = (
-            by_rppm(scene, crate, 1, type=kind, pass_filter={"COLOR"}),
-            by_cycles(scene, crate, 1, type=kind, pass_filter={"COLOR"}),
-        )
+        mine, theirs = (bake(scene, crate, 1, type=kind, pass_filter={"COLOR"}) for bake in (by_rppm, by_cycles))
         np.testing.assert_allclose(mine[..., :3], theirs[..., :3], rtol=0.01, atol=2e-3)
 
 
@@ -101,9 +92,9 @@ def test_direct_light_is_that_of_cycles(view):
     camera((0.0, -3.0, 1.0), (0.0, 0.0, 0.0))
     scene.render.bake.view_from = view
     options = {"type": "COMBINED", "pass_filter": {"DIRECT", "DIFFUSE", "GLOSSY", "EMIT"}}
-    theirs = np.array([by_cycles(scene, crate, 128, seed, **options) for seed in range(2)])[..., :3]
-    mine = np.array([by_rppm(scene, crate, 24, seed, 64, **options) for seed in range(2)])[..., :3]
-    compare(f"baked_{view.lower()}", mine.astype(np.float64), theirs.astype(np.float64), CLEAN)
+    theirs = np.array([by_cycles(scene, crate, 128, seed, **options) for seed in range(2)], np.float64)
+    mine = np.array([by_rppm(scene, crate, 24, seed, 64, **options) for seed in range(2)], np.float64)
+    compare(f"baked_{view.lower()}", mine[..., :3], theirs[..., :3], CLEAN)
 
 
 def test_normals_of_the_selected_on_the_active_are_those_of_cycles():
@@ -121,7 +112,6 @@ def test_light_is_that_of_cycles(contents):
     """With the shadow and the caustic of a ball of glass on the floor, by photons and shadow rays."""
     scene, floor, _ = room()
     options = {"type": "DIFFUSE", "pass_filter": contents}
-    theirs = np.array([by_cycles(scene, floor, 1024, seed, **options) for seed in range(2)])[..., :3]
-    mine = np.array([by_rppm(scene, floor, 40, seed, 8192, **options) for seed in range(2)])[..., :3]
-    name = "baked_" + "_".join(sorted(contents)).lower()
-    compare(name, mine.astype(np.float64), theirs.astype(np.float64), LIGHT)
+    theirs = np.array([by_cycles(scene, floor, 1024, seed, **options) for seed in range(2)], np.float64)
+    mine = np.array([by_rppm(scene, floor, 40, seed, 8192, **options) for seed in range(2)], np.float64)
+    compare("baked_" + "_".join(sorted(contents)).lower(), mine[..., :3], theirs[..., :3], LIGHT)

@@ -3,20 +3,17 @@
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
 
 from ..comparison import Tolerance, compare
-from ..engines import FIRST_SEED, render_frame
+from ..engines import FIRST_SEED, cycles_channels, render_frame, stacked, unfilter
 from ..scenes import DIFFUSE, ball, camera, light, material, new_scene, place, plane
 
 GROUPS = ("key", "sun", "glow", "sky")
-NOT_FILTERED = 0.01
-"""Pixels of a filter that looks through their middles."""
 CLOSE = Tolerance(mean=0.01, block=0.03, mode=0.01)
 
 
-def grouped(resolution: int) -> bpy.types.Scene:
+def grouped(resolution: int) -> None:
     """A floor and a ball under a lamp, a sun, a card that shines and a sky, each a group, and a lamp of none."""
     scene = new_scene(resolution, world=0.3)
     for group in GROUPS:
@@ -30,21 +27,13 @@ def grouped(resolution: int) -> bpy.types.Scene:
     light("SUN", 1.0, place(turn=(30.0, 20.0, 0.0)), angle=0.1).lightgroup = "sun"
     light("POINT", 10.0, place(at=(-1.0, -1.0, 1.0)), shadow_soft_size=0.1)
     camera((0.0, -3.0, 1.0), (0.0, 0.0, 0.0), 45.0)
-    return scene
 
 
-def cycles_groups(scene: bpy.types.Scene, path, samples: int, seed: int = FIRST_SEED) -> dict[str, np.ndarray]:
+def cycles_groups(samples: int, seed: int = FIRST_SEED) -> dict[str, np.ndarray]:
     """(H, W, 3) by group, and Combined as "", row 0 at the bottom."""
-    scene.render.engine, scene.cycles.samples, scene.cycles.seed = "CYCLES", samples, seed
-    scene.render.filepath = str(path / "cycles.exr")
-    bpy.ops.render.render(write_still=True)
-    with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:
-        planes = {name.split(".", 1)[1]: plane.pixels for part in file.parts for name, plane in part.channels.items()}
-    names = {group: f"Combined_{group}" for group in GROUPS} | {"": "Combined"}
-    return {
-        group: np.stack([planes[f"{name}.{channel}"] for channel in "RGB"], axis=-1)[::-1]
-        for group, name in names.items()
-    }
+    bpy.context.scene.cycles.seed = seed
+    channels = cycles_channels(samples)
+    return {group: stacked(channels, f"Combined_{group}") for group in GROUPS} | {"": stacked(channels, "Combined")}
 
 
 def rppm_groups(renderer, **settings: object) -> dict[str, np.ndarray]:
@@ -52,11 +41,11 @@ def rppm_groups(renderer, **settings: object) -> dict[str, np.ndarray]:
     return {group: frame.passes[f"Combined_{group}"] for group in GROUPS} | {"": frame.combined[..., :3]}
 
 
-def test_what_is_seen_to_shine_is_that_of_cycles(renderer, tmp_path):
+def test_what_is_seen_to_shine_is_that_of_cycles(renderer):
     """Which has no noise: the sky behind all, and the card."""
-    blender_scene = grouped(48)
-    blender_scene.cycles.pixel_filter_type, blender_scene.cycles.filter_width = "GAUSSIAN", NOT_FILTERED
-    expected = cycles_groups(blender_scene, tmp_path, samples=1)
+    grouped(48)
+    unfilter()
+    expected = cycles_groups(samples=1)
     mine = rppm_groups(renderer, filter_width=0.0, iterations=1, photons=256)
     for group, value in (("sky", (0.3, 0.3, 0.3)), ("glow", (3.0, 1.2, 0.3))):
         shines, shown = (np.isclose(picture[group], value, rtol=0.01).all(axis=-1) for picture in (mine, expected))
@@ -67,9 +56,9 @@ def test_what_is_seen_to_shine_is_that_of_cycles(renderer, tmp_path):
 
 
 @pytest.mark.long
-def test_light_is_that_of_cycles(renderer, tmp_path):
-    blender_scene = grouped(32)
-    reference = [cycles_groups(blender_scene, tmp_path, 1024, FIRST_SEED + seed) for seed in range(3)]
+def test_light_is_that_of_cycles(renderer):
+    grouped(32)
+    reference = [cycles_groups(1024, FIRST_SEED + seed) for seed in range(3)]
     settings = {"iterations": 64, "photons": 8192}
     mine = [rppm_groups(renderer, seed=seed, **settings) for seed in range(3)]
     for group in (*GROUPS, ""):

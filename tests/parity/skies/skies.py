@@ -11,19 +11,13 @@ import numpy as np
 from rppm_addon.scene.sky import Sky
 
 from ..engines import render_cycles
-from ..scenes import new_scene
+from ..net import Net
+from ..scenes import background, link_object, new_scene
 
 HEIGHT = 32
 _SCATTERING = (
-    "sun_elevation",
-    "sun_rotation",
-    "sun_disc",
-    "sun_size",
-    "sun_intensity",
-    "altitude",
-    "air_density",
-    "aerosol_density",
-    "ozone_density",
+    *("sun_elevation", "sun_rotation", "sun_disc", "sun_size", "sun_intensity"),
+    *("altitude", "air_density", "aerosol_density", "ozone_density"),
 )
 _ANALYTIC = ("sun_direction", "turbidity", "ground_albedo")
 
@@ -32,11 +26,10 @@ def _world(sky: Sky) -> bpy.types.Node:
     scene = new_scene(world=1.0)
     scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
     scene.world.cycles.sampling_method = "NONE"
-    tree = scene.world.node_tree
-    node = tree.nodes.new("ShaderNodeTexSky")
+    net = Net(scene.world.node_tree)
+    node = net.node("TexSky")
     _set(node, sky)
-    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
-    tree.links.new(node.outputs[0], background.inputs["Color"])
+    net.set(background().inputs["Color"], node.outputs[0])
     return node
 
 
@@ -47,12 +40,10 @@ def _set(node: bpy.types.Node, sky: Sky) -> None:
 
 
 def _camera(elevation: float, azimuth: float) -> bpy.types.Camera:
-    data = bpy.data.cameras.new("Camera")
-    made = bpy.data.objects.new("Camera", data)
+    made = link_object(bpy.data.cameras.new("Camera"))
     made.rotation_euler = (math.pi / 2 + elevation, 0.0, -azimuth)
-    bpy.context.scene.collection.objects.link(made)
     bpy.context.scene.camera = made
-    return data
+    return made.data
 
 
 def _seen() -> np.ndarray:
@@ -63,12 +54,8 @@ def _seen() -> np.ndarray:
 def _directions() -> np.ndarray:
     """(n, 3) float64 unit vectors of the pixels as rendered: the narrowest filter still moves them by 0.005 pixels,
     which shows beside the sun."""
-    tree = bpy.context.scene.world.node_tree
-    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
-    positive = tree.nodes.new("ShaderNodeVectorMath")
-    positive.inputs[1].default_value = (2.0, 2.0, 2.0)
-    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], positive.inputs[0])
-    tree.links.new(positive.outputs[0], background.inputs["Color"])
+    net = Net(bpy.context.scene.world.node_tree)
+    net.set(background().inputs["Color"], net.scaled(net.out("TexCoord", "Generated"), 1.0, 2.0))
     directions = _seen() - 2.0
     return directions / np.linalg.norm(directions, axis=1, keepdims=True)
 

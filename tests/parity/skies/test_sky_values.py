@@ -40,31 +40,34 @@ def _toward(elevation: float, azimuth: float) -> tuple[float, float, float]:
     return along * math.sin(azimuth), along * math.cos(azimuth), math.sin(elevation)
 
 
+def _both_types(rows: dict[str, tuple], each_time: set[tuple[str, str]]) -> list:
+    """Rows as parameters, with each type of sky; with the long tests but for those that are named."""
+    return [
+        pytest.param(
+            sky_type, *row, id=f"{name}-{sky_type}", marks=[] if (name, sky_type) in each_time else [pytest.mark.long]
+        )
+        for sky_type in (SINGLE, MULTIPLE)
+        for name, row in rows.items()
+    ]
+
+
 EACH_TIME = {
     ("night", MULTIPLE), ("sunset", SINGLE), ("noon", SINGLE), ("past_zenith", MULTIPLE), ("air", SINGLE),
     ("haze", MULTIPLE), ("ozone", SINGLE), ("airplane", MULTIPLE),
 }  # fmt: skip
-"""Each with one of the skies."""
-SCATTERING = [
-    pytest.param(
-        sky_type, elevation, altitude, densities, rotation, id=f"{name}-{sky_type}",
-        marks=[] if (name, sky_type) in EACH_TIME else [pytest.mark.long],
-    )
-    for sky_type in (SINGLE, MULTIPLE)
-    for name, elevation, altitude, densities, rotation in [
-        ("night", -5.0, 100.0, (1, 1, 1), 0.0),
-        ("sunset", 2.0, 100.0, (1, 1, 1), 70.0),
-        ("noon", 60.0, 2000.0, (1, 1, 1), -30.0),
-        ("past_zenith", 130.0, 100.0, (1, 1, 1), 20.0),
-        ("air", 30.0, 100.0, (1, 0, 0), 0.0),
-        ("haze", 10.0, 100.0, (0.1, 10, 1), 0.0),
-        ("ozone", 5.0, 100.0, (2, 0, 5), 0.0),
-        ("airplane", 20.0, 12000.0, (1, 1, 1), 0.0),
-    ]
-]  # fmt: skip
+SCATTERING = {
+    "night": (-5.0, 100.0, (1, 1, 1), 0.0),
+    "sunset": (2.0, 100.0, (1, 1, 1), 70.0),
+    "noon": (60.0, 2000.0, (1, 1, 1), -30.0),
+    "past_zenith": (130.0, 100.0, (1, 1, 1), 20.0),
+    "air": (30.0, 100.0, (1, 0, 0), 0.0),
+    "haze": (10.0, 100.0, (0.1, 10, 1), 0.0),
+    "ozone": (5.0, 100.0, (2, 0, 5), 0.0),
+    "airplane": (20.0, 12000.0, (1, 1, 1), 0.0),
+}
 
 
-@pytest.mark.parametrize("sky_type, elevation, altitude, densities, rotation", SCATTERING)
+@pytest.mark.parametrize("sky_type, elevation, altitude, densities, rotation", _both_types(SCATTERING, EACH_TIME))
 def test_scattering(sky_type, elevation, altitude, densities, rotation):
     sky = _sky(sky_type, elevation, altitude, densities, rotation=rotation, sun_disc=False)
     _compare(sky, mean=5e-4, pixel=0.005)
@@ -110,29 +113,18 @@ def _compare(sky: Sky, mean: float, pixel: float) -> None:
 
 
 SUNS_EACH_TIME = {
-    ("day", SINGLE),
-    ("red", MULTIPLE),
-    ("half_set", MULTIPLE),
-    ("below_level", SINGLE),
-    ("dense", SINGLE),
+    ("day", SINGLE), ("red", MULTIPLE), ("half_set", MULTIPLE), ("below_level", SINGLE), ("dense", SINGLE),
+}  # fmt: skip
+SUNS = {
+    "day": (30.0, 0.545, 100.0, (1, 1, 1)),
+    "red": (2.0, 4.0, 100.0, (1, 1, 1)),
+    "half_set": (0.3, 4.0, 100.0, (1, 1, 0)),
+    "below_level": (-1.0, 4.0, 20000.0, (1, 1, 1)),
+    "dense": (45.0, 1.0, 100.0, (2, 3, 4)),
 }
-SUNS = [
-    pytest.param(
-        sky_type, elevation, size, altitude, densities, id=f"{name}-{sky_type}",
-        marks=[] if (name, sky_type) in SUNS_EACH_TIME else [pytest.mark.long],
-    )
-    for sky_type in (SINGLE, MULTIPLE)
-    for name, elevation, size, altitude, densities in [
-        ("day", 30.0, 0.545, 100.0, (1, 1, 1)),
-        ("red", 2.0, 4.0, 100.0, (1, 1, 1)),
-        ("half_set", 0.3, 4.0, 100.0, (1, 1, 0)),
-        ("below_level", -1.0, 4.0, 20000.0, (1, 1, 1)),
-        ("dense", 45.0, 1.0, 100.0, (2, 3, 4)),
-    ]
-]  # fmt: skip
 
 
-@pytest.mark.parametrize("sky_type, elevation, size, altitude, densities", SUNS)
+@pytest.mark.parametrize("sky_type, elevation, size, altitude, densities", _both_types(SUNS, SUNS_EACH_TIME))
 def test_sun_disc(sky_type, elevation, size, altitude, densities):
     """Cycles with the disk less Cycles without it."""
     sky = _sky(sky_type, elevation, altitude, densities, rotation=25.0, sun_size=math.radians(size), sun_intensity=1.5)

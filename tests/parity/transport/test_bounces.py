@@ -26,15 +26,8 @@ def test_bounces_in_a_box_with_a_glass_ball(renderer, bounces, gathers):
     light("AREA", 30.0, place(at=(0.2, 0.1, 0.9)), shape="SQUARE", size=0.6)
     camera((0.0, -0.95, 0.0), (0.0, 1.0, -0.1), 75.0)
     _limit(**{f"{kind}_bounces": bounces for kind in ("max", "diffuse", "glossy", "transmission")})
-    compare_with_cycles(
-        renderer,
-        f"bounces_{bounces}_{gathers}",
-        512,
-        photons=16384,
-        max_bounces=bounces,
-        use_final_gather=gathers,
-        iterations=24,
-    )
+    settings = {"photons": 16384, "max_bounces": bounces, "use_final_gather": gathers, "iterations": 24}
+    compare_with_cycles(renderer, f"bounces_{bounces}_{gathers}", 512, **settings)
 
 
 @pytest.mark.parametrize("most", [pytest.param(8, marks=pytest.mark.long), 4])
@@ -48,6 +41,5 @@ def test_transparent_cards_above_a_floor(renderer, most):
     light("AREA", 60.0, place(at=(0.0, 0.0, 2.0)), shape="SQUARE", size=1.0)
     camera((0.0, -0.5, 4.0), (0.0, 0.0, 0.0), 40.0)
     _limit(transparent_max_bounces=most)
-    compare_with_cycles(
-        renderer, f"transparent_cards_{most}", 256, photons=32768, transparent_max_bounces=most, iterations=24
-    )
+    settings = {"photons": 32768, "transparent_max_bounces": most, "iterations": 24}
+    compare_with_cycles(renderer, f"transparent_cards_{most}", 256, **settings)

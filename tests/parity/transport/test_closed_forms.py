@@ -1,29 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scenes whose radiance is known in closed form."""
 
+import bpy
 import numpy as np
 import pytest
 
 from ..comparison import CONVERGED, compare
 from ..engines import render_rppm
-from ..scenes import (
-    DIFFUSE,
-    GLASS,
-    GLOSSY,
-    PRINCIPLED,
-    RESOLUTION,
-    ball,
-    box,
-    camera,
-    glowing_diffuse,
-    light,
-    material,
-    new_scene,
-    place,
-    plane,
-)
+from ..net import material as empty_material
+from ..scenes import DIFFUSE, GLASS, GLOSSY, PRINCIPLED, ball, box, camera, light, material, new_scene, place, plane
 
-WHOLE = np.ones((1, RESOLUTION, RESOLUTION, 3))
+
+def glowing_diffuse(albedo: float, radiance: float) -> bpy.types.Material:
+    """Diffuse that emits as well, through Add Shader."""
+    made, net = empty_material("Material")
+    reflecting = net.out("BsdfDiffuse", 0, {"Color": albedo})
+    net.output(net.out("AddShader", 0, {0: reflecting, 1: net.emission(1.0, radiance)}))
+    return made
+
+
+def assert_radiance(renderer, name: str, radiance: float, **settings: object) -> None:
+    """Everywhere in the picture."""
+    pictures = render_rppm(renderer, **settings)
+    compare(name, pictures, np.full_like(pictures[:1], radiance), CONVERGED)
 
 
 @pytest.mark.parametrize(
@@ -39,12 +38,8 @@ def test_furnace(renderer, shape, mode):
     else:
         ball(1.0, glowing, segments=48)
     camera((0.5, 0.3, 0.2), (-1.0, -0.4, -0.1), 80.0)
-    compare(
-        f"furnace_{shape}_{mode.lower()}",
-        render_rppm(renderer, direct_light=mode, photons=32768, photon_path_length=11, iterations=4),
-        2.0 * WHOLE,
-        CONVERGED,
-    )
+    settings = {"direct_light": mode, "photons": 32768, "photon_path_length": 11, "iterations": 4}
+    assert_radiance(renderer, f"furnace_{shape}_{mode.lower()}", 2.0, **settings)
 
 
 @pytest.mark.parametrize("mode", ["RAYS", "PHOTONS"])
@@ -52,12 +47,8 @@ def test_diffuse_plane_under_a_white_sky(renderer, mode):
     new_scene(world=1.0)
     plane(3.0, material(DIFFUSE, Color=0.6))
     camera((0.0, -1.0, 6.0), (0.0, 0.0, 0.0), 30.0)
-    compare(
-        f"sky_{mode.lower()}",
-        render_rppm(renderer, direct_light=mode, photons=32768, photon_path_length=2, iterations=12),
-        0.6 * WHOLE,
-        CONVERGED,
-    )
+    settings = {"direct_light": mode, "photons": 32768, "photon_path_length": 2, "iterations": 12}
+    assert_radiance(renderer, f"sky_{mode.lower()}", 0.6, **settings)
 
 
 @pytest.mark.parametrize("roughness", [0.0, 0.3, 0.6])
@@ -66,13 +57,8 @@ def test_white_glass_vanishes_in_a_white_sky(renderer, roughness):
     new_scene(world=1.0)
     ball(1.0, material(GLASS, Color=1.0, Roughness=roughness, IOR=1.5))
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 30.0)
-    settings = {"camera_path_length": 32, "specular_roughness": 1.0}
-    compare(
-        f"white_glass_{roughness}",
-        render_rppm(renderer, photons=1024, photon_path_length=1, iterations=12, **settings),
-        WHOLE,
-        CONVERGED,
-    )
+    settings = {"photons": 1024, "photon_path_length": 1, "iterations": 12, "camera_path_length": 32}
+    assert_radiance(renderer, f"white_glass_{roughness}", 1.0, specular_roughness=1.0, **settings)
 
 
 def test_white_glass_that_stores_photons_vanishes_in_a_white_sky(renderer):
@@ -97,12 +83,8 @@ def test_white_metal_vanishes_in_a_white_sky(renderer, shader):
     distribution = "MULTI_GGX" if shader == GLOSSY else None
     ball(1.0, material(shader, distribution, Roughness=0.7, **inputs))
     camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 30.0)
-    compare(
-        f"white_metal_{shader}",
-        render_rppm(renderer, photons=1024, photon_path_length=2, iterations=12, specular_roughness=1.0),
-        WHOLE,
-        CONVERGED,
-    )
+    settings = {"photons": 1024, "photon_path_length": 2, "iterations": 12, "specular_roughness": 1.0}
+    assert_radiance(renderer, f"white_metal_{shader}", 1.0, **settings)
 
 
 def test_radiance_is_not_scaled_inside_glass(renderer):
@@ -113,12 +95,8 @@ def test_radiance_is_not_scaled_inside_glass(renderer):
     camera((0.0, 0.0, 6.0), (0.0, 0.0, 0.0), 4.0)
     reflectivity = 0.04
     through = (1 - reflectivity) / (1 + reflectivity)
-    compare(
-        "pane",
-        render_rppm(renderer, photons=1024, photon_path_length=1, iterations=24, camera_path_length=12),
-        3.0 * through * WHOLE,
-        CONVERGED,
-    )
+    settings = {"photons": 1024, "photon_path_length": 1, "iterations": 24, "camera_path_length": 12}
+    assert_radiance(renderer, "pane", 3.0 * through, **settings)
 
 
 def test_nothing_but_the_light_is_lit_behind_it(renderer):

@@ -21,9 +21,8 @@ def test_closed_diffuse_box(renderer, mode):
     new_scene()
     _box_with_colored_side(DIFFUSE)
     light("AREA", 30.0, place(at=(0.2, 0.1, 0.9)), shape="SQUARE", size=0.6)
-    compare_with_cycles(
-        renderer, f"box_{mode.lower()}", 512, direct_light=mode, photons=65536, photon_path_length=32, iterations=12
-    )
+    settings = {"direct_light": mode, "photons": 65536, "photon_path_length": 32, "iterations": 12}
+    compare_with_cycles(renderer, f"box_{mode.lower()}", 512, **settings)
 
 
 @pytest.mark.long

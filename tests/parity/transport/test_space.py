@@ -8,7 +8,7 @@ import pytest
 
 from ..comparison import CAUSTIC, compare
 from ..engines import render_cycles, render_rppm
-from ..scenes import DIFFUSE, GLASS, camera, light, material, new_scene, place, plane
+from ..scenes import DIFFUSE, GLASS, camera, light, material, mesh_object, new_scene, place, plane
 
 PATHS = {"photon_path_length": 12, "camera_path_length": 12}
 
@@ -23,10 +23,7 @@ def _tumbler(turns: int = 48) -> None:
         for k in range(len(profile) - 1)
         for i in range(turns)
     ]
-    data = bpy.data.meshes.new("Tumbler")
-    data.from_pydata(vertices, [], faces)
-    data.materials.append(material(GLASS, Color=1.0, Roughness=0.0, IOR=1.5))
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Tumbler", data))
+    mesh_object(vertices, faces, material(GLASS, Color=1.0, Roughness=0.0, IOR=1.5), name="Tumbler")
 
 
 def _scene() -> None:

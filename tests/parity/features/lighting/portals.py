@@ -5,7 +5,7 @@ import bmesh
 import bpy
 
 from ...net import Net, diffuse
-from ...scenes import camera, light, place
+from ...scenes import background, camera, light, place
 from .. import stage
 from ..rows import Row, add
 
@@ -38,9 +38,8 @@ def _sky() -> None:
     along = net.out("VectorMath", "Value", {0: net.out("TexCoord", "Generated"), 1: (0.8, -0.25, 0.545)},
                     operation="DOT_PRODUCT")  # fmt: skip
     spot = net.out("Math", 0, {0: along, 1: 0.985}, operation="GREATER_THAN")
-    background = stage.background()
-    net.set(background.inputs["Color"], net.out("MixRGB", 0, {0: spot, 1: (0.5, 0.7, 1.0), 2: (60.0, 50.0, 40.0)}))
-    background.inputs["Strength"].default_value = 1.0
+    net.set(background().inputs["Color"], net.out("MixRGB", 0, {0: spot, 1: (0.5, 0.7, 1.0), 2: (60.0, 50.0, 40.0)}))
+    background().inputs["Strength"].default_value = 1.0
 
 
 def _row(name: str, portals, **members: object) -> None:

@@ -4,15 +4,12 @@
 import bpy
 
 from ...net import Net, material, socket
+from ...scenes import background
 from .. import stage
 from ..rows import Kind, Row, add
 from ..values.image_textures import picture
 from .light_limits import brighten
 from .lights import feed
-
-
-def _net() -> Net:
-    return Net(bpy.context.scene.world.node_tree)
 
 
 def world(group: str, name: str, given, surface=None, kind: Kind = Kind.LIGHT, **members: object) -> None:
@@ -25,11 +22,9 @@ def world(group: str, name: str, given, surface=None, kind: Kind = Kind.LIGHT, *
         stage.set_up(plain)
         if surface is _shiny:
             bpy.data.objects.remove(bpy.data.objects["Ground"])  # Cycles ends long paths at random
-        net = _net()
-        color, strength = given(net)
-        background = stage.background()
-        net.set(background.inputs["Color"], color)
-        net.set(background.inputs["Strength"], strength)
+        net = Net(bpy.context.scene.world.node_tree)
+        for name, value in zip(("Color", "Strength"), given(net), strict=True):
+            net.set(background().inputs[name], value)
 
     add(Row(group, name, build, kind, **members))
 
@@ -101,11 +96,10 @@ world(GROUP, "blackbody", feed(socket("Blackbody", 0, {0: 4500.0}), 0.7))
 
 def _mixed_world(net):
     """Two Backgrounds by Is Camera Ray."""
-    first = stage.background()
+    first = background()
     second = net.node("Background", {"Color": (0.1, 0.3, 0.1), "Strength": 1.0})
     mix = net.node("MixShader", {0: CAMERA_RAY, 1: first.outputs[0], 2: second.outputs[0]})
-    output = next(node for node in net.tree.nodes if node.type == "OUTPUT_WORLD")
-    net.set(output.inputs["Surface"], mix.outputs[0])
+    net.set(net.find("OUTPUT_WORLD").inputs["Surface"], mix.outputs[0])
     return (0.8, 0.7, 0.6), 1.0
 
 
@@ -144,7 +138,8 @@ def _limited(bounces, given):
 
 
 SAMPLED = {"reason": "Cycles leaves in what its rays find of the world by chance", "mean": 0.03, "block": 0.05}
-"""A world of one bright spot, of which Cycles' rays that happen to meet it, and ask for no bounces, know little."""
+"""Members of the row of a bright spot, of which Cycles' rays that meet it by chance, and ask for no bounces, know
+little."""
 _brightness = socket("Math", 0, {0: _around((0.5, -0.5, 0.707), 0.97), 1: 30.0}, operation="MULTIPLY")
 world("Max Bounces", "world with a bright spot, 0", _limited(0, feed((1.0, 0.9, 0.8), _brightness)), **SAMPLED)
 world("Max Bounces", "even world, 0", _limited(0, feed((0.5, 0.55, 0.6))))

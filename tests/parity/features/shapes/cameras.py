@@ -6,6 +6,7 @@ import math
 import bpy
 
 from ...net import material
+from ...scenes import background
 from .. import stage
 from ..rows import Kind, Row, add
 
@@ -18,7 +19,7 @@ def cam(name: str, change, kind: Kind = Kind.VALUES, **members: object) -> None:
         surface, net = material()
         stage.set_up(surface)
         net.output(net.emission(net.scaled(net.out("TexCoord", "Object"), 0.15, 0.5)))
-        stage.background().inputs["Strength"].default_value = 0.05
+        background().inputs["Strength"].default_value = 0.05
         change(bpy.context.scene.camera.data)
 
     add(Row("Camera", name, build, kind, **members))
@@ -50,19 +51,9 @@ cam("fisheye, equisolid", _panorama("FISHEYE_EQUISOLID", fisheye_lens=15.0, fish
 cam("mirror ball", _panorama("MIRRORBALL"))
 cam("cylinder", _panorama("CENTRAL_CYLINDRICAL"))
 cam("depth of field", _set(use_dof=True, focus_distance=4.0, aperture_fstop=0.15), Kind.LIGHT, effort=2)
-cam(
-    "depth of field, 5 blades",
-    _set(
-        use_dof=True,
-        focus_distance=3.6,
-        aperture_fstop=0.12,
-        aperture_blades=5,
-        aperture_rotation=0.4,
-        aperture_ratio=1.5,
-    ),
-    Kind.LIGHT,
-    effort=2,
-)
+_blades = {"aperture_blades": 5, "aperture_rotation": 0.4, "aperture_ratio": 1.5}
+_lens = _set(use_dof=True, focus_distance=3.6, aperture_fstop=0.12, **_blades)
+cam("depth of field, 5 blades", _lens, Kind.LIGHT, effort=2)
 
 
 def _film(**properties):
@@ -74,17 +65,8 @@ def _film(**properties):
     return change
 
 
-cam(
-    "border",
-    _film(
-        use_border=True,
-        use_crop_to_border=True,
-        border_min_x=0.25,
-        border_max_x=0.75,
-        border_min_y=0.125,
-        border_max_y=0.875,
-    ),
-)
+_border = {"border_min_x": 0.25, "border_max_x": 0.75, "border_min_y": 0.125, "border_max_y": 0.875}
+cam("border", _film(use_border=True, use_crop_to_border=True, **_border))
 cam("oblong pixels", _film(pixel_aspect_x=2.0, pixel_aspect_y=1.0))
 cam("transparent film", _film(film_transparent=True))
 

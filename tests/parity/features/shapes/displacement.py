@@ -3,8 +3,8 @@
 
 import bpy
 
-from ...net import Net, material
-from ...scenes import place
+from ...net import Socket, material, socket
+from ...scenes import link_object, place
 from .. import stage
 from ..rows import Kind, Row, add, ground_material
 
@@ -34,25 +34,19 @@ def surface(name: str, displacement, method: str) -> bpy.types.Material:
     return made
 
 
-def noise(net: Net, scale: float = 0.25, coordinates: str = "Object", space: str = "OBJECT"):
-    at = net.out("TexCoord", coordinates)
-    height = net.out("TexNoise", 0, {"Vector": at, "Scale": 2.5, "Detail": 1.0})
-    return net.out("Displacement", 0, {"Height": height, "Scale": scale}, space=space)
+def noise(scale: float = 0.25, coordinates: str = "Object", space: str = "OBJECT") -> Socket:
+    height = socket("TexNoise", 0, {"Vector": socket("TexCoord", coordinates), "Scale": 2.5, "Detail": 1.0})
+    return socket("Displacement", 0, {"Height": height, "Scale": scale}, space=space)
 
 
-def vector(space: str):
-    def give(net):
-        at = net.out("TexCoord", "Object")
-        color = net.out("TexNoise", "Color", {"Vector": at, "Scale": 2.0, "Detail": 0.0})
-        return net.out("VectorDisplacement", 0, {"Vector": color, "Midlevel": 0.5, "Scale": 0.6}, space=space)
-
-    return give
+def vector(space: str) -> Socket:
+    color = socket("TexNoise", "Color", {"Vector": socket("TexCoord", "Object"), "Scale": 2.0, "Detail": 0.0})
+    return socket("VectorDisplacement", 0, {"Vector": color, "Midlevel": 0.5, "Scale": 0.6}, space=space)
 
 
-def along_u(net):
-    """Return a displacement along U, which is not the same on both sides of the map's seam."""
-    u = net.out("SeparateXYZ", "X", {0: net.out("TexCoord", "UV")})
-    return net.out("Displacement", 0, {"Height": u, "Midlevel": 0.0, "Scale": 0.4})
+U = socket("SeparateXYZ", "X", {0: socket("TexCoord", "UV")})
+NOISE, ALONG_U = noise(), socket("Displacement", 0, {"Height": U, "Midlevel": 0.0, "Scale": 0.4})
+"""ALONG_U is not the same on both sides of the map's seam."""
 
 
 def flat() -> None:
@@ -62,7 +56,7 @@ def flat() -> None:
 def other_half() -> None:
     """Another material on half of the ball, which is displaced by something else and bumped."""
     ball = bpy.data.objects["Ball"].data
-    ball.materials.append(surface("Other", lambda net: noise(net, 0.4), "BOTH"))
+    ball.materials.append(surface("Other", noise(0.4), "BOTH"))
     for face in ball.polygons:
         face.material_index = int(face.center.x > 0.0)
 
@@ -84,21 +78,19 @@ def subdivided(kind: str, space: str):
 
 def twin() -> None:
     """A smaller object of the same mesh, turned round and mirrored."""
-    ball = bpy.data.objects["Ball"]
-    made = bpy.data.objects.new("Twin", ball.data)
-    bpy.context.scene.collection.objects.link(made)
-    made.matrix_world = place(at=(-0.9, -0.6, 0.6), turn=(0.0, 60.0, 0.0), scale=(-0.5, 0.5, 0.4))
+    where = place(at=(-0.9, -0.6, 0.6), turn=(0.0, 60.0, 0.0), scale=(-0.5, 0.5, 0.4))
+    link_object(bpy.data.objects["Ball"].data, where, "Twin")
 
 
-displaced("only, noise", noise)
-displaced("and bump, noise", noise, "BOTH")
-displaced("only, flat faces", noise, prepare=flat)
-displaced("and bump, flat faces", noise, "BOTH", flat)
-displaced("along the seam of a UV map", along_u)
-displaced("by Generated, world space", lambda net: noise(net, 0.3, "Generated", "WORLD"))
-displaced("two materials", along_u, prepare=other_half)
-displaced("two objects of a mesh", noise, prepare=twin)
-displaced("Adaptive Subdivision", noise, prepare=subdivided("CATMULL_CLARK", "PIXEL"), warns=True)
-displaced("Adaptive Subdivision, simple, meters", noise, prepare=subdivided("SIMPLE", "OBJECT"), warns=True)
+displaced("only, noise", NOISE)
+displaced("and bump, noise", NOISE, "BOTH")
+displaced("only, flat faces", NOISE, prepare=flat)
+displaced("and bump, flat faces", NOISE, "BOTH", flat)
+displaced("along the seam of a UV map", ALONG_U)
+displaced("by Generated, world space", noise(0.3, "Generated", "WORLD"))
+displaced("two materials", ALONG_U, prepare=other_half)
+displaced("two objects of a mesh", NOISE, prepare=twin)
+displaced("Adaptive Subdivision", NOISE, prepare=subdivided("CATMULL_CLARK", "PIXEL"), warns=True)
+displaced("Adaptive Subdivision, simple, meters", NOISE, prepare=subdivided("SIMPLE", "OBJECT"), warns=True)
 for _space in ("OBJECT", "WORLD", "TANGENT"):
     displaced(f"by a vector, {_space}", vector(_space))

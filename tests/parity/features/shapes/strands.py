@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ...net import Net, material, socket
-from ...scenes import camera, link_object
+from ...scenes import background, camera, link_object
 from .. import stage
 from ..rows import Kind, Row, add, ground_material
 
@@ -100,7 +100,7 @@ def stand(
     """Place what ``make`` makes before the camera, lit on the ground, or else alone and unlit, in an empty scene."""
     plain = ground_material()
     camera((0.4, -4.6, 2.3), (0.0, 0.0, 0.9), 34.0)
-    stage.background().inputs["Strength"].default_value = 0.0 if glow else 0.25
+    background().inputs["Strength"].default_value = 0.0 if glow else 0.25
     bpy.context.scene.world.cycles.sampling_method = "MANUAL"
     bpy.context.scene.world.cycles.sample_map_resolution = 256
     make(surface)

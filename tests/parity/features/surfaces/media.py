@@ -8,7 +8,7 @@ from collections.abc import Callable
 import bmesh
 import bpy
 
-from ...net import Net, diffuse, material
+from ...net import diffuse, material
 from ...scenes import camera, light, mesh_object, place
 from .. import stage
 from ..lighting.lights import ABOVE
@@ -24,7 +24,9 @@ BALL = {"at": (0.1, 0.0, 0.95)}
 def body(name: str, absorption: tuple | None, ior: float | None = None, glow: tuple | None = None):
     """A material that is a medium; ior: of its smooth surface, which is not there without."""
     made, net = material(name)
-    parts = [] if absorption is None else [_absorption(net, *absorption)]
+    parts = []
+    if absorption is not None:
+        parts.append(net.out("VolumeAbsorption", inputs=dict(zip(("Color", "Density"), absorption))))
     parts += [] if glow is None else [net.emission(*glow)]
     volume = parts[0]
     for part in parts[1:]:
@@ -32,10 +34,6 @@ def body(name: str, absorption: tuple | None, ior: float | None = None, glow: tu
     surface = None if ior is None else net.out("BsdfGlass", inputs={"Color": 1.0, "Roughness": 0.0, "IOR": ior})
     net.output(surface, Volume=volume)
     return made
-
-
-def _absorption(net: Net, color: tuple, density: float) -> bpy.types.NodeSocket:
-    return net.out("VolumeAbsorption", inputs={"Color": color, "Density": density})
 
 
 def block(surface: bpy.types.Material, low: tuple, high: tuple) -> bpy.types.Object:

@@ -6,7 +6,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...net import socket
-from ...scenes import place
+from ...scenes import link_object, place
 from ..rows import value
 
 GROUP = "Texture Coordinate"
@@ -27,10 +27,7 @@ outputs(GROUP, "TexCoord", {
 
 
 def _empty() -> bpy.types.Object:
-    made = bpy.data.objects.new("Empty", None)
-    bpy.context.scene.collection.objects.link(made)
-    made.matrix_world = place((0.5, -0.3, 0.2), (20.0, 40.0, 10.0), (1.0, 2.0, 0.7))
-    return made
+    return link_object(None, place((0.5, -0.3, 0.2), (20.0, 40.0, 10.0), (1.0, 2.0, 0.7)), "Empty")
 
 
 value(GROUP, "Object, of another", lambda net: net.out("TexCoord", "Object", object=_empty()), 0.1, 0.5)

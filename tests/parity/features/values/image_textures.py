@@ -12,6 +12,7 @@ import numpy as np
 import OpenEXR
 from PIL import Image
 
+from ...net import socket
 from ..rows import value
 from .coordinates import second_uv
 
@@ -65,24 +66,13 @@ def image(kind: str = "png", space: str | None = None, alpha: str | None = None)
 
 
 def texture(output="Color", inputs=None, kind="png", space=None, alpha=None, mapping=None, **properties):
-    """Gives an output of an image texture; ``mapping`` = coordinates and scale, by default UV."""
-
-    def give(net):
-        chosen = dict(inputs or {})
-        if mapping is not None:
-            coordinates, location, scale = mapping
-            chosen["Vector"] = net.out(
-                "Mapping",
-                inputs={
-                    "Vector": net.out("TexCoord", coordinates),
-                    "Location": (location,) * 3,
-                    "Scale": (scale,) * 3,
-                    "Rotation": (0.3, -0.2, 0.5),
-                },
-            )
-        return net.out("TexImage", output, chosen, image=image(kind, space, alpha), **properties)
-
-    return give
+    """Gives an output of an image texture; ``mapping`` = coordinates, location and scale, by default UV."""
+    chosen = dict(inputs or {})
+    if mapping is not None:
+        coordinates, location, scale = mapping
+        placed = {"Location": (location,) * 3, "Scale": (scale,) * 3, "Rotation": (0.3, -0.2, 0.5)}
+        chosen["Vector"] = socket("Mapping", inputs={"Vector": socket("TexCoord", coordinates)} | placed)
+    return lambda net: net.out("TexImage", output, chosen, image=image(kind, space, alpha), **properties)
 
 
 BEYOND = ("UV", -0.7, 3.0)
@@ -91,47 +81,30 @@ for _interpolation in ("Linear", "Closest", "Cubic", "Smart"):
     value(GROUP, f"interpolation {_interpolation}", texture(interpolation=_interpolation, kind="opaque"))
 for _extension in ("REPEAT", "EXTEND", "CLIP", "MIRROR"):
     for _interpolation in ("Linear", "Closest"):
-        value(
-            GROUP,
-            f"extension {_extension}, {_interpolation}",
-            texture(extension=_extension, interpolation=_interpolation, mapping=BEYOND),
-        )
+        _give = texture(extension=_extension, interpolation=_interpolation, mapping=BEYOND)
+        value(GROUP, f"extension {_extension}, {_interpolation}", _give)
 value(GROUP, "extension CLIP, alpha", texture("Alpha", extension="CLIP", mapping=BEYOND))
 value(GROUP, "extension MIRROR, Cubic", texture(extension="MIRROR", interpolation="Cubic", mapping=BEYOND))
 for _projection in ("BOX", "SPHERE", "TUBE"):
     for _coordinates in ("Generated", "Object"):
-        value(
-            GROUP,
-            f"projection {_projection}, {_coordinates}",
-            texture(projection=_projection, mapping=(_coordinates, 0.1, 0.8)),
-        )
+        _give = texture(projection=_projection, mapping=(_coordinates, 0.1, 0.8))
+        value(GROUP, f"projection {_projection}, {_coordinates}", _give)
 for _blend in (0.2, 1.0):
-    value(
-        GROUP,
-        f"projection BOX, blend {_blend}",
-        texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8)),
-    )
-for _space in ("sRGB", "Non-Color", "Linear Rec.709"):
-    value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"))
-for _space in ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"):
-    value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"), 0.5, 0.8)
-for _space in (
-    "Filmic sRGB",
-    "Filmic Log",
-    "AgX Base sRGB",
-    "Khronos PBR Neutral sRGB",
-    "ACES 2.0 sRGB",
-    "Rec.2100-HLG",
-):
-    value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"), 0.05, 0.5)
-value(
-    GROUP,
-    "color space Filmic sRGB, alpha",
-    texture(space="Filmic sRGB"),
-    0.1,
-    0.5,
-    reason="Cycles rounds to half floats before it multiplies by alpha",
-)
+    _give = texture(projection="BOX", projection_blend=_blend, mapping=("Object", 0.1, 0.8))
+    value(GROUP, f"projection BOX, blend {_blend}", _give)
+SPACES = {
+    (1.0, 0.0): ("sRGB", "Non-Color", "Linear Rec.709"),
+    (0.5, 0.8): ("ACEScg", "Linear Rec.2020", "Linear CIE-XYZ E", "Display P3", "Rec.1886"),
+    (0.05, 0.5): (
+        "Filmic sRGB", "Filmic Log", "AgX Base sRGB", "Khronos PBR Neutral sRGB", "ACES 2.0 sRGB", "Rec.2100-HLG",
+    ),
+}  # fmt: skip
+"""Color spaces by the scale and offset with which their colors are shown."""
+for _shown, _spaces in SPACES.items():
+    for _space in _spaces:
+        value(GROUP, f"color space {_space}", texture(space=_space, kind="opaque"), *_shown)
+_rounds = "Cycles rounds to half floats before it multiplies by alpha"
+value(GROUP, "color space Filmic sRGB, alpha", texture(space="Filmic sRGB"), 0.1, 0.5, reason=_rounds)
 for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
     value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
 value(GROUP, "16 bits, gray", texture(kind="deep"))
@@ -152,12 +125,8 @@ def _color_over_alpha(alpha):
 
 for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED"):
     value(GROUP, f"alpha {_alpha}, both outputs", _color_over_alpha(_alpha))
-value(
-    GROUP,
-    "in a second UV map",
-    lambda net: texture(inputs={"Vector": net.out("UVMap", uv_map="Second")})(net),
-    prepare=second_uv,
-)
+_second = texture(inputs={"Vector": socket("UVMap", uv_map="Second")})
+value(GROUP, "in a second UV map", _second, prepare=second_uv)
 
 
 def _limited(kind, width, height):
@@ -172,7 +141,7 @@ def _limited(kind, width, height):
 
 value(GROUP, "texture limit", _limited("png", 300, 140))
 value(GROUP, "texture limit, float", _limited("exr", 520, 2), 0.3, 0.5)
-value(GROUP, "without an image", lambda net: net.out("TexImage"), warns=True)
+value(GROUP, "without an image", socket("TexImage"), warns=True)
 
 
 def _generated_image(net):
@@ -237,23 +206,9 @@ for _movie, _what in ((False, "sequence"), (True, "movie")):
     value(GROUP, f"{_what}, after its end", _animated(_movie, 50))
 
 
-def _image_bump(net):
-    height = texture(kind="gray", interpolation="Cubic")(net)
-    return net.out("Bump", inputs={"Height": height, "Distance": 0.1})
-
-
-value("Bump", "image", _image_bump, 0.5, 0.5)
-value(
-    "Bump",
-    "image, linear",
-    lambda net: net.out("Bump", inputs={"Height": texture(kind="gray")(net), "Distance": 0.05}),
-    0.5,
-    0.5,
-)
-value(
-    "Normal Map",
-    "image",
-    lambda net: net.out("NormalMap", inputs={"Color": texture(space="Non-Color", kind="opaque")(net)}),
-    0.5,
-    0.5,
-)
+_cubic = socket("Bump", inputs={"Height": texture(kind="gray", interpolation="Cubic"), "Distance": 0.1})
+_linear = socket("Bump", inputs={"Height": texture(kind="gray"), "Distance": 0.05})
+_mapped = socket("NormalMap", inputs={"Color": texture(space="Non-Color", kind="opaque")})
+value("Bump", "image", _cubic, 0.5, 0.5)
+value("Bump", "image, linear", _linear, 0.5, 0.5)
+value("Normal Map", "image", _mapped, 0.5, 0.5)
