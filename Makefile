@@ -27,8 +27,7 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 
 # Each of their tests compiles programs and renders next to nothing, which the system's older Mesa does in a third of
 # the time while nothing is cached.
-COMPILE_BOUND = tests/parity/features tests/parity/test_node_values.py tests/parity/test_texture_values.py \
-	tests/parity/test_shader_nodes.py tests/parity/test_thin_wall.py tests/parity/test_texture_export.py \
+COMPILE_BOUND = tests/parity/features tests/parity/nodes \
 	tests/blender/export/test_bad_materials.py tests/blender/export/test_material_fuzz.py \
 	tests/blender/render/test_animation.py tests/blender/render/test_animations.py \
 	tests/gl/materials/test_material_programs.py tests/gl/device/test_gl_layer.py \
@@ -121,7 +120,7 @@ survey: setup ## Compare small files as beginners make them with Cycles, to out/
 	.venv/bin/python -m tools.pairs out/survey/files --out out/survey --samples 32 --cycles-samples 64 $(PAIRS)
 
 TESTS ?= tests/parity
-references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/test_lights.py)
+references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/lights/test_lights.py)
 	.venv/bin/python -m pytest -q $(TESTS) --cycles=write --timeout=3600
 
 parity: setup ## Compare references with Cycles, and each feature (ROWS=--continue): out/parity/, docs/compatibility.md

@@ -15,7 +15,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 MOST_FILES = 6
 """With long tests, that CI has time for."""
-PICTURES = ("tests/gl", "tests/parity/test_*.py")
+PARITY = ("cameras", "geometry", "lights", "materials", "nodes", "passes", "skies", "transport")
+"""Folders of tests/parity but for features, whose rows take as long as all of them."""
+PICTURES = ("tests/gl", *(f"tests/parity/{room}" for room in PARITY))
 ROOMS: dict[str, tuple[str, ...]] = {
     "shaders/materials/": ("tests/gl/surfaces/test_closures.py", "tests/parity"),
     "rppm_addon/materials/": ("tests/gl/surfaces/test_closures.py", "tests/parity"),
@@ -46,16 +48,16 @@ def touched(changed: list[str], root: Path = ROOT) -> list[str]:
                 for path in (given.rglob("test_*.py") if given.is_dir() else [given])
             }
     found |= _importing({name for name in changed if name in files}, files)
-    kept = {
-        "tests/parity/" + Path(name).stem + ".py" for name in changed if name.startswith("tests/parity/references/")
-    }
-    return sorted(name for name in found | (kept & files.keys()) if Path(name).name.startswith("test_"))
+    kept = {Path(name).stem for name in changed if name.startswith("tests/parity/references/")}
+    found |= {name for name in files if name.startswith("tests/parity/") and Path(name).stem in kept}
+    return sorted(name for name in found if Path(name).name.startswith("test_"))
 
 
 def _importing(modules: set[str], files: dict[str, Path]) -> set[str]:
     """The modules of tests and those that import them, one by way of another.
 
-    Modules are known in their folder and below, those of tests/support in all; a conftest.py counts for its folder.
+    Modules are known in their folder and below, those of tests/support in all and those of tests/parity there; a
+    conftest.py counts for its folder.
     """
     imports = {name: _imported(path) for name, path in files.items()}
     found, new = set(modules), set(modules)
@@ -63,10 +65,11 @@ def _importing(modules: set[str], files: dict[str, Path]) -> set[str]:
         more = set()
         for module in new:
             path = Path(module)
+            for_all = path.stem == "conftest"
             room = "tests/" if path.parent.name == "support" else f"{path.parent.as_posix()}/"
-            for name in files:
-                if name.startswith(room) and (path.stem == "conftest" or path.stem in imports[name]):
-                    more.add(name)
+            if room.startswith("tests/parity/") and not for_all:
+                room = "tests/parity/"
+            more |= {name for name in files if name.startswith(room) and (for_all or path.stem in imports[name])}
         new = more - found
         found |= more
     return found

@@ -10,7 +10,7 @@ its parameter z = sqrt(abs((ior - 1) / (ior + 1))), linear from 0 to 1. They are
 file; ``python -m rppm_addon.materials.albedo_tables`` computes them anew.
 
 Those of the sheen (a and b of its linearly transformed cosine, and its albedo, (32, 32) each) are what Cycles
-shows: tests/parity/measure_sheen.py measures them.
+shows: tests/parity/nodes/measure_sheen.py measures them.
 """
 
 from pathlib import Path

@@ -40,7 +40,7 @@ def _smooth(values: np.ndarray) -> np.ndarray:
     return sum(padded[i : i + rows, j : j + columns] for i in range(3) for j in range(3)) / 9.0
 
 
-def _squared_error(blocks: np.ndarray) -> np.ndarray:
+def mean_variance(blocks: np.ndarray) -> np.ndarray:
     """Squared standard error of the mean over the seeds (axis 0), for each block."""
     if len(blocks) == 1:
         return np.zeros(blocks.shape[1:])  # a closed form
@@ -75,7 +75,7 @@ def compare(
     write_pair(name, rppm.mean(axis=0), reference.mean(axis=0))
     a, b = block_means(rppm), block_means(reference)
     difference = a.mean(axis=0) - b.mean(axis=0)
-    squared_error = _squared_error(a) + _squared_error(b)
+    squared_error = mean_variance(a) + mean_variance(b)
     level = b.mean(axis=0)
     regions = {"all": np.ones(level.shape, bool)} | ({"region": region} if region is not None else {})
     means = {}

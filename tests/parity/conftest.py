@@ -11,7 +11,7 @@ from rppm_addon.gl.context.context import Context  # noqa: E402
 from rppm_addon.gl.programs.programs import ProgramLibrary  # noqa: E402
 from rppm_addon.session.render.renderer import Renderer  # noqa: E402
 
-from . import references  # noqa: E402
+from . import references  # noqa: E402from
 
 
 class NoRenderer:

@@ -24,7 +24,9 @@ from rppm_addon.blender.export import export_scene
 from rppm_addon.session.render.renderer import Renderer
 
 from .comparison import block_means
-from .scenes import camera, light, new_scene, place, render_cycles
+from .engines import render_cycles
+from .net import Net, material
+from .scenes import camera, light, new_scene, place
 
 COLUMNS, ROWS = 5, 4
 CELL = 32
@@ -99,39 +101,22 @@ def _append(previews: list[Preview]) -> list[bpy.types.Material]:
 
 
 def _floor() -> None:
-    surface = bpy.data.materials.new("Floor")
-    if surface.node_tree is None:
-        surface.use_nodes = True
-    tree = surface.node_tree
-    tree.nodes.clear()
-    checker, diffuse, output, coordinates = (
-        tree.nodes.new("ShaderNode" + name) for name in ("TexChecker", "BsdfDiffuse", "OutputMaterial", "TexCoord")
-    )
-    checker.inputs["Color1"].default_value = (0.6, 0.6, 0.6, 1.0)
-    checker.inputs["Color2"].default_value = (0.15, 0.15, 0.2, 1.0)
-    checker.inputs["Scale"].default_value = 1.999
-    tree.links.new(coordinates.outputs["Object"], checker.inputs["Vector"])
-    tree.links.new(checker.outputs["Color"], diffuse.inputs["Color"])
-    tree.links.new(diffuse.outputs[0], output.inputs["Surface"])
+    surface, net = material("Floor")
+    colors = {"Color1": (0.6, 0.6, 0.6), "Color2": (0.15, 0.15, 0.2), "Scale": 1.999}
+    checker = net.out("TexChecker", 0, colors | {"Vector": net.out("TexCoord", "Object")})
+    net.output(net.out("BsdfDiffuse", 0, {"Color": checker}))
     bpy.ops.mesh.primitive_plane_add(size=30.0, location=(0.0, 0.0, -RADIUS - 0.001))
     bpy.context.object.data.materials.append(surface)
 
 
 def _sky(world: bpy.types.World) -> None:
     """Brown below, bright above: even enough to be quiet, uneven enough to show where light goes."""
-    tree = world.node_tree
-    coordinates, gradient, ramp = (
-        tree.nodes.new("ShaderNode" + name) for name in ("TexCoord", "SeparateXYZ", "ValToRGB")
-    )
-    height = tree.nodes.new("ShaderNodeMapRange")
-    height.inputs["From Min"].default_value, height.inputs["From Max"].default_value = -1.0, 1.0
+    net = Net(world.node_tree)
+    height = net.out("SeparateXYZ", "Z", {0: net.out("TexCoord", "Generated")})
+    ramp = net.node("ValToRGB", {0: net.out("MapRange", 0, {"Value": height, "From Min": -1.0, "From Max": 1.0})})
     ramp.color_ramp.elements[0].color = (0.25, 0.15, 0.1, 1.0)
     ramp.color_ramp.elements[1].color = (0.4, 0.6, 0.9, 1.0)
-    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
-    tree.links.new(coordinates.outputs["Generated"], gradient.inputs[0])
-    tree.links.new(gradient.outputs["Z"], height.inputs["Value"])
-    tree.links.new(height.outputs["Result"], ramp.inputs["Fac"])
-    tree.links.new(ramp.outputs["Color"], background.inputs["Color"])
+    net.set(net.find("BACKGROUND").inputs["Color"], ramp.outputs["Color"])
 
 
 def build(previews: list[Preview], alone: bool = False) -> None:

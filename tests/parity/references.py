@@ -62,6 +62,11 @@ def use(mode: Mode) -> None:
     _state.mode = mode
 
 
+def mode() -> Mode:
+    """Where Cycles' side comes from now."""
+    return _state.mode
+
+
 def begin(test_file: Path) -> None:
     """Tests of a module begin."""
     _state.test_file = test_file
@@ -78,13 +83,12 @@ def light(render: Callable[[], np.ndarray], seeds: int) -> np.ndarray:
     Of what is kept the means of blocks are exact for each seed; within a block all seeds have the detail of their mean,
     coarsely rounded.
     """
-    mode = _state.mode
-    if mode is Mode.RENDER or (mode is not Mode.WRITE and bpy.app.version_string != _blender_of_files()):
+    if mode() is Mode.RENDER or (mode() is not Mode.WRITE and bpy.app.version_string != _blender_of_files()):
         return render()
     name = f"{seeds}_{scene_digest()}"
-    if mode is Mode.WRITE:
+    if mode() is Mode.WRITE:
         found = render()
-        parts = {f"{name}/{part}": array for part, array in _pack(found).items()}
+        parts = {f"{name}/{part}": array for part, array in packed(found).items()}
         _state.written.update(parts)
         return found
     file = _file()
@@ -95,11 +99,11 @@ def light(render: Callable[[], np.ndarray], seeds: int) -> np.ndarray:
             "or scene_digest.py changed. Keep what Cycles gives now:\n"
             f"    make references TESTS={_state.test_file.as_posix()}"
         )
-    if mode is Mode.COMPARE:
+    if mode() is Mode.COMPARE:
         found = render()
-        _compare(found, _unpack(kept), f"tests/parity/references/{file.name}")
+        compare(found, unpacked(kept), f"tests/parity/references/{file.name}")
         return found
-    return _unpack(kept)
+    return unpacked(kept)
 
 
 def _file() -> Path:
@@ -140,7 +144,7 @@ def _enlarged(blocks: np.ndarray) -> np.ndarray:
     return blocks.repeat(BLOCK, axis=-3).repeat(BLOCK, axis=-2)
 
 
-def _pack(pictures: np.ndarray) -> dict[str, np.ndarray]:
+def packed(pictures: np.ndarray) -> dict[str, np.ndarray]:
     """Means of blocks, and the detail of the seeds' mean: 4 bits of exponent below the largest value, 4 of mantissa."""
     assert (pictures >= 0.0).all(), "light is not negative"
     mean = pictures.mean(axis=0)
@@ -152,7 +156,7 @@ def _pack(pictures: np.ndarray) -> dict[str, np.ndarray]:
     return {"detail": detail, "blocks": _block_means(pictures).astype(np.float32)}
 
 
-def _unpack(kept: dict[str, np.ndarray]) -> np.ndarray:
+def unpacked(kept: dict[str, np.ndarray]) -> np.ndarray:
     code, blocks = kept["detail"].astype(np.int32), kept["blocks"].astype(np.float64)
     detail = np.where(code > 0, np.ldexp(1.0 + (code % 16 + 0.5) / 16.0, code // 16 - 15), 0.0)
     if detail.shape[-1] < blocks.shape[-1]:
@@ -162,7 +166,7 @@ def _unpack(kept: dict[str, np.ndarray]) -> np.ndarray:
     return detail * _enlarged(ratios)
 
 
-def _compare(found: np.ndarray, kept: np.ndarray, file: str) -> None:
+def compare(found: np.ndarray, kept: np.ndarray, file: str) -> None:
     a, b = _block_means(found), _block_means(kept)
     difference = np.abs(a.mean(axis=0) - b.mean(axis=0))
     noise = 0.0

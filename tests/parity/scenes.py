@@ -1,32 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small Blender scenes made in Python, and how to render them with Cycles and with RPPM.
-
-Both engines get the same Blender scene: Cycles through bpy.ops.render.render, RPPM through the
-extension's exporter and a Renderer.
-"""
+"""Small Blender scenes made in Python."""
 
 import functools
 import math
-import os
-import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
-import OpenEXR
-import pytest
 from mathutils import Matrix, Vector
 
-from rppm_addon.blender.export import export_scene
-from rppm_addon.scene import Scene
-from rppm_addon.session.render.renderer import Renderer
-from rppm_addon.session.render.results import RenderStatistics
-
-from . import references
+from .net import Net
+from .net import material as net_material
 
 RESOLUTION = 64
-FIRST_SEED = 1000
 DIFFUSE, GLOSSY, GLASS = "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfGlass"
 PRINCIPLED, EMISSION = "ShaderNodeBsdfPrincipled", "ShaderNodeEmission"
 
@@ -57,55 +43,23 @@ def new_scene(resolution: int = RESOLUTION, world: float = 0.0) -> bpy.types.Sce
     scene.world = bpy.data.worlds.new("World")
     if scene.world.node_tree is None:
         scene.world.use_nodes = True
-    background = next(node for node in scene.world.node_tree.nodes if node.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    background.inputs["Strength"].default_value = world
+    background().inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    background().inputs["Strength"].default_value = world
     return scene
 
 
 def material(shader: str, distribution: str | None = None, **inputs: float | Sequence[float]) -> bpy.types.Material:
     """One shader node on the surface output; inputs by socket name with _ for a space."""
-    made = _empty_material()
-    _connect(made, _shader(made, shader, distribution, inputs))
+    made, net = net_material("Material")
+    properties = {} if distribution is None else {"distribution": distribution}
+    given = {name.replace("_", " "): value for name, value in inputs.items()}
+    net.output(net.out(shader.removeprefix("ShaderNode"), 0, given, **properties))
     return made
 
 
-def glowing_diffuse(albedo: float, radiance: float) -> bpy.types.Material:
-    """Diffuse that emits as well, through Add Shader."""
-    made = _empty_material()
-    add = made.node_tree.nodes.new("ShaderNodeAddShader")
-    reflecting = _shader(made, DIFFUSE, None, {"Color": albedo})
-    shining = _shader(made, EMISSION, None, {"Color": 1.0, "Strength": radiance})
-    for part, socket in zip((reflecting, shining), add.inputs):
-        made.node_tree.links.new(part.outputs[0], socket)
-    _connect(made, add)
-    return made
-
-
-def _empty_material() -> bpy.types.Material:
-    made = bpy.data.materials.new("Material")
-    if made.node_tree is None:
-        made.use_nodes = True
-    made.node_tree.nodes.clear()
-    return made
-
-
-def _shader(made: bpy.types.Material, kind: str, distribution: str | None, inputs: dict) -> bpy.types.Node:
-    node = made.node_tree.nodes.new(kind)
-    if distribution is not None:
-        node.distribution = distribution
-    for name, value in inputs.items():
-        socket = node.inputs[name.replace("_", " ")]
-        if socket.type == "RGBA":
-            value = (value,) * 3 if np.isscalar(value) else tuple(value)
-            value = (*value, 1.0)
-        socket.default_value = value
-    return node
-
-
-def _connect(made: bpy.types.Material, node: bpy.types.Node) -> None:
-    output = made.node_tree.nodes.new("ShaderNodeOutputMaterial")
-    made.node_tree.links.new(node.outputs[0], output.inputs["Surface"])
+def background() -> bpy.types.Node:
+    """The Background of the current scene's world."""
+    return Net(bpy.context.scene.world.node_tree).find("BACKGROUND")
 
 
 def place(
@@ -118,15 +72,19 @@ def place(
     return Matrix.Translation(Vector(at)) @ rotation @ Matrix.Diagonal((*scale, 1.0))
 
 
-def _mesh(vertices: Sequence, faces: Sequence, surface: bpy.types.Material, matrix: Matrix | None) -> bpy.types.Object:
-    data = bpy.data.meshes.new("Mesh")
+def mesh_object(
+    vertices: Sequence, faces: Sequence, surface: bpy.types.Material, matrix: Matrix | None = None, name: str = "Mesh"
+) -> bpy.types.Object:
+    """An object of a mesh of one material, in the current scene."""
+    data = bpy.data.meshes.new(name)
     data.from_pydata(vertices, [], faces)
     data.materials.append(surface)
-    return _link(data, matrix)
+    return link_object(data, matrix)
 
 
-def _link(data: bpy.types.ID, matrix: Matrix | None) -> bpy.types.Object:
-    made = bpy.data.objects.new(data.name, data)
+def link_object(data: bpy.types.ID | None, matrix: Matrix | None = None, name: str = "") -> bpy.types.Object:
+    """An object of some data, by the data's name if none is given, in the current scene."""
+    made = bpy.data.objects.new(name or data.name, data)
     bpy.context.scene.collection.objects.link(made)
     if matrix is not None:
         made.matrix_world = matrix
@@ -136,7 +94,7 @@ def _link(data: bpy.types.ID, matrix: Matrix | None) -> bpy.types.Object:
 def plane(half: float, surface: bpy.types.Material, matrix: Matrix | None = None) -> bpy.types.Object:
     """A square in XY that faces +Z."""
     corners = [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)]
-    return _mesh(corners, [(0, 1, 2, 3)], surface, matrix)
+    return mesh_object(corners, [(0, 1, 2, 3)], surface, matrix)
 
 
 def box(half: Sequence[float], surface: bpy.types.Material, matrix: Matrix | None = None) -> bpy.types.Object:
@@ -144,7 +102,7 @@ def box(half: Sequence[float], surface: bpy.types.Material, matrix: Matrix | Non
     x, y, z = half
     corners = [(i * x, j * y, k * z) for k in (-1, 1) for j in (-1, 1) for i in (-1, 1)]
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    return _mesh(corners, faces, surface, matrix)
+    return mesh_object(corners, faces, surface, matrix)
 
 
 def ball(
@@ -166,7 +124,7 @@ def ball(
         for ring in range(rings - 2):
             low, high = 1 + ring * segments, 1 + (ring + 1) * segments
             faces.append((low + i, low + j, high + j, high + i))
-    made = _mesh(vertices, faces, surface, matrix)
+    made = mesh_object(vertices, faces, surface, matrix)
     made.data.shade_smooth()
     return made
 
@@ -177,7 +135,7 @@ def light(kind: str, energy: float, matrix: Matrix, **properties: object) -> bpy
     data.energy = energy
     for name, value in properties.items():
         setattr(data, name, value)
-    return _link(data, matrix)
+    return link_object(data, matrix)
 
 
 def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) -> bpy.types.Object:
@@ -186,104 +144,14 @@ def camera(at: Sequence[float], toward: Sequence[float], angle: float = 40.0) ->
     data.angle = math.radians(angle)
     data.clip_start, data.clip_end = 0.01, 100.0
     direction = Vector(toward) - Vector(at)
-    made = _link(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
+    made = link_object(data, Matrix.Translation(Vector(at)) @ direction.to_track_quat("-Z", "Y").to_matrix().to_4x4())
     bpy.context.scene.camera = made
     return made
 
 
-def render_cycles(samples: int, seeds: int = 2) -> np.ndarray:
-    """(seeds, height, width, 3) float64 scene-linear pictures, row 0 at the bottom."""
-    return _cycles_pictures(samples, seeds)[..., :3]
-
-
-def render_cycles_over(background: float, samples: int, seeds: int = 2) -> np.ndarray:
-    """render_cycles with a transparent film, laid over an even background of some radiance."""
-    bpy.context.scene.render.film_transparent = True
-    pictures = _cycles_pictures(samples, seeds)
-    bpy.context.scene.render.film_transparent = False
-    return pictures[..., :3] + background * (1.0 - pictures[..., 3:])
-
-
-def _cycles_pictures(samples: int, seeds: int) -> np.ndarray:
-    """(seeds, height, width, 4) float64, premultiplied by alpha; without noise if of a single sample."""
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.cycles.samples = samples
-    scene.cycles.seed = FIRST_SEED
-    if samples == 1:
-        return _render_seeds(seeds)
-    return references.light(lambda: _render_seeds(seeds), seeds)
-
-
-def _render_seeds(seeds: int) -> np.ndarray:
-    scene = bpy.context.scene
-    pictures = []
-    for seed in range(seeds):
-        scene.cycles.seed = FIRST_SEED + seed
-        channels = cycles_channels(scene.cycles.samples)
-        pictures.append(np.stack([channels[f"Combined.{letter}"] for letter in "RGBA"], axis=-1))
-    return np.array(pictures, np.float64)
-
-
-def unfilter() -> None:
-    """Have Cycles look through the middles of pixels, or next to them."""
-    cycles = bpy.context.scene.cycles
-    cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01
-
-
-def cycles_channels(samples: int = 1) -> dict[str, np.ndarray]:
-    """Return Cycles' view layer by pass and channel ("Depth.Z"): (H, W) float32, row 0 at the bottom."""
-    scene = bpy.context.scene
-    scene.render.engine, scene.cycles.samples = "CYCLES", samples
-    return _render_channels()
-
-
-def render_final(samples: int, seeds: int = 3) -> np.ndarray:
-    """(seeds, height, width, 3) float64, row 0 at the bottom: what RPPM gives as Blender's render engine, of what
-    Blender evaluates for renders and not for viewports."""
-    if references.only_cycles():
-        pytest.skip("only Cycles' side")
-    scene = bpy.context.scene
-    scene.render.engine, scene.rppm.samples, scene.rppm.photons = "RPPM", samples, 256
-    pictures = []
-    for seed in range(seeds):
-        scene.rppm.seed = seed
-        channels = _render_channels()
-        pictures.append(np.stack([channels[f"Combined.{letter}"] for letter in "RGB"], axis=-1))
-    return np.array(pictures, np.float64)
-
-
-def _render_channels() -> dict[str, np.ndarray]:
-    scene = bpy.context.scene
-    with tempfile.TemporaryDirectory() as folder:
-        scene.render.filepath = os.path.join(folder, "picture.exr")
-        bpy.ops.render.render(write_still=True)
-        with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:  # each pass is a part of its own
-            channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
-    return {name.partition(".")[2]: pixels[::-1] for name, pixels in channels.items()}
-
-
-def exported_scene() -> Scene:
-    """The current Blender scene as RPPM sees it."""
-    scene = export_scene(bpy.context.evaluated_depsgraph_get())
-    assert scene.warnings == [], scene.warnings
-    return scene
-
-
-@dataclass
-class Rendered:
-    pictures: np.ndarray
-    """(seeds, height, width, 3) float64, row 0 at the bottom."""
-    statistics: RenderStatistics
-    """Statistics of the last seed's render."""
-
-
-def render_rppm(renderer: Renderer, seeds: int = 3, **settings: object) -> Rendered:
-    """The current Blender scene from independent seeds; settings by the names of RenderSettings."""
-    scene = exported_scene()
-    pictures = []
-    for seed in range(seeds):
-        scene.settings = scene.settings.with_values(seed=seed, **settings)
-        result = renderer.render(scene)
-        pictures.append(result.frame.combined[..., :3].astype(np.float64))
-    return Rendered(np.array(pictures), result.statistics)
+def orthographic_camera(scale: float, matrix: Matrix | None = None) -> bpy.types.Object:
+    """The scene's camera, which looks along its -Z at ``scale`` meters."""
+    data = bpy.data.cameras.new("Camera")
+    data.type, data.ortho_scale = "ORTHO", scale
+    bpy.context.scene.camera = link_object(data, matrix)
+    return bpy.context.scene.camera

@@ -7,8 +7,9 @@ import pytest
 
 from . import references
 from .comparison import block_means
+from .engines import render_cycles
 from .scene_digest import scene_digest
-from .scenes import DIFFUSE, GLASS, ball, camera, light, material, new_scene, place, plane, render_cycles
+from .scenes import DIFFUSE, GLASS, ball, camera, light, material, new_scene, place, plane
 
 
 def pictures(seed: int, level: float = 1.0) -> np.ndarray:
@@ -23,7 +24,7 @@ def pictures(seed: int, level: float = 1.0) -> np.ndarray:
 
 def test_means_of_blocks_are_kept_and_detail_roughly():
     given = pictures(1)
-    kept = references._unpack(references._pack(given))
+    kept = references.unpacked(references.packed(given))
     np.testing.assert_allclose(block_means(kept[..., :3]), block_means(given[..., :3]), rtol=1e-6)
     np.testing.assert_array_equal(kept[..., 3], 1.0)
     np.testing.assert_array_equal(kept == 0.0, given == 0.0)
@@ -33,11 +34,11 @@ def test_means_of_blocks_are_kept_and_detail_roughly():
 
 
 def test_comparing_takes_noise_and_nothing_else():
-    kept = references._unpack(references._pack(pictures(1)))
-    references._compare(pictures(1), kept, "file")
-    references._compare(pictures(2), kept, "file")
+    kept = references.unpacked(references.packed(pictures(1)))
+    references.compare(pictures(1), kept, "file")
+    references.compare(pictures(2), kept, "file")
     with pytest.raises(AssertionError, match="make references"):
-        references._compare(pictures(2, 1.2), kept, "file")
+        references.compare(pictures(2, 1.2), kept, "file")
 
 
 def build() -> bpy.types.Scene:
@@ -102,16 +103,24 @@ def test_what_windows_show_changes_nothing(registered):
     assert scene_digest() == before
 
 
-def test_a_scene_of_which_nothing_is_kept_says_how_to_keep_it(monkeypatch):
-    monkeypatch.setattr(references._state, "mode", references.Mode.KEPT)
-    monkeypatch.setattr(references, "_blender_of_files", lambda: bpy.app.version_string)
+@pytest.fixture
+def kept(monkeypatch, tmp_path):
+    """References are used, of an empty folder for this Blender."""
+    mode = references.mode()
+    monkeypatch.setattr(references, "FOLDER", tmp_path)
+    (tmp_path / "blender_version.txt").write_text(bpy.app.version_string)
+    references.use(references.Mode.KEPT)
+    yield tmp_path
+    references.use(mode)
+
+
+def test_a_scene_of_which_nothing_is_kept_says_how_to_keep_it(kept):
     build()
     with pytest.raises(references.ReferenceMissing, match="make references TESTS=tests/parity/test_references.py"):
         render_cycles(samples=2)
 
 
-def test_another_blender_renders_for_itself(monkeypatch):
-    monkeypatch.setattr(references._state, "mode", references.Mode.KEPT)
-    monkeypatch.setattr(references, "_blender_of_files", lambda: "another")
+def test_another_blender_renders_for_itself(kept):
+    (kept / "blender_version.txt").write_text("another")
     build()
     assert render_cycles(samples=2, seeds=1).shape == (1, 64, 64, 3)

@@ -3,8 +3,8 @@
 
 Per channel of CIE XYZ, radiance is (1 + A exp(B / (cos t + 0.01))) (C + D exp(E g) + F cos^2 g + G chi(H, g) +
 I sqrt(cos t)), t the angle to the zenith and g to the sun. The authors fitted the nine numbers to path-traced skies.
-Ours were found by solving for them in renders of Cycles (tests/parity/measure_hosek_wilkie.py), which the form meets
-to 2e-7. C, D, F, G and I include the channel's overall radiance.
+Ours were found by solving for them in renders of Cycles (tests/parity/skies/measure_hosek_wilkie.py), which the form
+meets to 2e-7. C, D, F, G and I include the channel's overall radiance.
 
 In the cube root of the sun's elevation A, B, E and H are polynomials of degree five and the products of degree ten,
 so that twelve elevations determine all; in turbidity and albedo they are pieces of degree two, which values at the ends

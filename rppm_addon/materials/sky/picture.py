@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's Sky Texture as numbers: radiance by direction, and the sun.
 
-Values are those of Cycles, found and checked in renders (tests/parity/test_sky_values.py).
+Values are those of Cycles, found and checked in renders (tests/parity/skies/test_sky_values.py).
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light and shadow linking: shadow rays and photons agree, and each object gets the light that is meant for it.
 
-Against Cycles: tests/parity/features/light_linking.py.
+Against Cycles: tests/parity/features/lighting/light_linking.py.
 """
 
 import dataclasses

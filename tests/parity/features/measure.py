@@ -11,8 +11,8 @@ from rppm_addon.blender.export import export_scene
 from rppm_addon.scene import Scene
 from rppm_addon.session.render.renderer import Renderer
 
-from ..comparison import _squared_error, block_means
-from ..scenes import render_cycles
+from ..comparison import block_means, mean_variance
+from ..engines import render_cycles
 from .flip import flip
 from .rows import Kind, Row
 
@@ -115,7 +115,7 @@ def compared(rppm: np.ndarray, cycles: np.ndarray, values: bool, warnings: tuple
     level, white = max(reference.mean(), 1e-9), white_of(reference)
     a, b = block_means(rppm), block_means(cycles)
     difference = np.abs(a.mean(axis=0) - b.mean(axis=0))
-    squared_error = _squared_error(a) + _squared_error(b)
+    squared_error = mean_variance(a) + mean_variance(b)
     blocks = np.maximum(b.mean(axis=0), 0.1 * level)
     excess = (difference - 4.0 * np.sqrt(squared_error)) / blocks
     worst = np.unravel_index(np.argmax(excess), excess.shape)

@@ -75,9 +75,8 @@ def not_rendered() -> str:
 SOURCES = (
     "rppm_addon/**/*",
     "shaders/**/*",
-    "tests/parity/comparison.py",
-    "tests/parity/scenes.py",
-    "tests/parity/features/*.py",
+    *(f"tests/parity/{name}.py" for name in ("comparison", "engines", "net", "scenes")),
+    "tests/parity/features/**/*.py",
 )
 
 

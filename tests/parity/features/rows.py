@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from ..net import Net, diffuse, material
 from . import stage
-from .net import Net, material
 
 
 class Kind(enum.Enum):
@@ -82,9 +82,7 @@ def value(
 
 def ground_material() -> bpy.types.Material:
     """Return the material of the ground below the lit objects."""
-    plain, net = material("Ground")
-    net.output(net.out("BsdfDiffuse", inputs={"Color": (0.5, 0.45, 0.4)}))
-    return plain
+    return diffuse("Ground", (0.5, 0.45, 0.4))
 
 
 def lit(

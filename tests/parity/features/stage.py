@@ -7,7 +7,7 @@ import math
 import bmesh
 import bpy
 
-from ..scenes import camera, light, new_scene, place
+from ..scenes import background, camera, light, link_object, new_scene, place
 
 BALL = {"at": (0.1, 0.0, 0.95), "turn": (25.0, -15.0, 40.0), "scale": (1.0, 0.85, 1.1)}
 GROUND = {"at": (0.0, 0.2, 0.0), "turn": (0.0, 0.0, 20.0), "scale": (1.0, 1.3, 1.0)}
@@ -20,10 +20,7 @@ def mesh_object(mesh: bmesh.types.BMesh, name: str, surface: bpy.types.Material 
     mesh.free()
     if surface is not None:
         data.materials.append(surface)
-    made = bpy.data.objects.new(name, data)
-    bpy.context.scene.collection.objects.link(made)
-    made.matrix_world = place(**where)
-    return made
+    return link_object(data, place(**where), name)
 
 
 def ball(surface: bpy.types.Material | None, where: dict = BALL, segments: int = 32) -> bpy.types.Object:
@@ -80,11 +77,6 @@ def set_up(surface: bpy.types.Material | None, world: float = 0.0, ground_surfac
 def empty() -> None:
     """A new scene with a black world."""
     new_scene()
-
-
-def background() -> bpy.types.Node:
-    """The world's Background node."""
-    return next(n for n in bpy.context.scene.world.node_tree.nodes if n.type == "BACKGROUND")
 
 
 def area_light() -> bpy.types.Object:

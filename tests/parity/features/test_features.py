@@ -9,10 +9,13 @@ and all but the first of those kinds of nodes whose values have tests of their o
 import numpy as np
 import pytest
 
-from . import ashikhmin_shirley, displacement, fibers, media, metallic, portals, ray_nodes, strands, zones_and_closures
 from .flip import flip
+from .lighting import portals
 from .row_tests import assert_near_cycles
+from .shapes import displacement, strands
 from .suite import ROWS
+from .surfaces import ashikhmin_shirley, fibers, media, metallic, ray_nodes
+from .values import zones_and_closures
 
 DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", "Driven: Normal by a bump")
 

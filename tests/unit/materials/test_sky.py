@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Skies without Blender: closed forms and symmetries; tests/parity/test_sky_values.py compares them to Cycles."""
+"""Skies without Blender: closed forms and symmetries; tests/parity/skies/test_sky_values.py compares them to Cycles."""
 
 import math
 

@@ -8,7 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tools"))
-from touched_tests import MOST_FILES, ROOMS, bounded, touched  # noqa: E402
+from touched_tests import MOST_FILES, PARITY, ROOMS, bounded, touched  # noqa: E402
 
 sys.path.remove(str(ROOT / "tools"))
 
@@ -18,9 +18,10 @@ def checkout(tmp_path):
     files = {
         "tests/support/floor.py": "",
         "tests/parity/scenes.py": "from support.floor import lay",
-        "tests/parity/test_lights.py": "from .scenes import light",
+        "tests/parity/lights/test_lights.py": "from ..scenes import light",
         "tests/parity/features/measure.py": "from ..scenes import light",
-        "tests/parity/features/test_features.py": "from . import measure",
+        "tests/parity/features/lighting/lamps.py": "",
+        "tests/parity/features/test_features.py": "from . import measure\nfrom .lighting import lamps",
         "tests/gl/scenes.py": "",
         "tests/gl/surfaces/test_bsdf.py": "import scenes",
         "tests/gl/density_estimation/test_seeds.py": "import math",
@@ -33,7 +34,7 @@ def checkout(tmp_path):
     return tmp_path
 
 
-FEATURES, LIGHTS = "tests/parity/features/test_features.py", "tests/parity/test_lights.py"
+FEATURES, LIGHTS = "tests/parity/features/test_features.py", "tests/parity/lights/test_lights.py"
 BSDF, SEEDS, INFO = (
     "tests/gl/surfaces/test_bsdf.py",
     "tests/gl/density_estimation/test_seeds.py",
@@ -48,6 +49,7 @@ BSDF, SEEDS, INFO = (
         ("tests/gl/scenes.py", [BSDF]),  # not those of the module's namesake
         ("tests/support/floor.py", [FEATURES, LIGHTS]),
         ("tests/parity/features/measure.py", [FEATURES]),
+        ("tests/parity/features/lighting/lamps.py", [FEATURES]),  # of a folder beside those that import it
         ("tests/gl/conftest.py", [SEEDS, BSDF]),
         ("shaders/film/passes.comp", [SEEDS, BSDF, LIGHTS]),
         ("shaders/materials/nodes/math.glsl", [FEATURES, LIGHTS]),
@@ -67,6 +69,8 @@ def test_rooms_are_there():
         assert (ROOT / room).is_dir()
         assert not any(room.startswith(earlier) for earlier in rooms[:number])
         assert all(list(ROOT.glob(pattern)) for pattern in ROOMS[room])
+    parity = {path.parent.name for path in (ROOT / "tests/parity").glob("*/__init__.py")}
+    assert parity == {"features", *PARITY}
 
 
 def test_more_than_ci_has_time_for_is_left_to_hand(tmp_path, capsys):

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Displacement that moves vertices, with and without the bump of its height, on meshes of all kinds."""
+
+import bpy
+
+from ...net import Socket, material, socket
+from ...scenes import link_object, place
+from .. import stage
+from ..rows import Kind, Row, add, ground_material
+
+GROUP = "Displacement"
+COLOR = {"Color": (0.8, 0.45, 0.3)}
+
+
+def displaced(name, displacement, method="DISPLACEMENT", prepare=None, **members):
+    """A row of a diffuse ball that is displaced, under an area light and a weak world; ``displacement`` takes the
+    net."""
+
+    def build() -> None:
+        stage.empty()
+        plain = ground_material()
+        stage.set_up(surface("Feature", displacement, method), 0.25, plain)
+        stage.area_light()
+        if prepare is not None:
+            prepare()
+
+    add(Row(GROUP, name, build, Kind.LIGHT, **members))
+
+
+def surface(name: str, displacement, method: str) -> bpy.types.Material:
+    made, net = material(name)
+    made.displacement_method = method
+    net.output(net.out("BsdfDiffuse", inputs=COLOR), Displacement=displacement(net))
+    return made
+
+
+def noise(scale: float = 0.25, coordinates: str = "Object", space: str = "OBJECT") -> Socket:
+    height = socket("TexNoise", 0, {"Vector": socket("TexCoord", coordinates), "Scale": 2.5, "Detail": 1.0})
+    return socket("Displacement", 0, {"Height": height, "Scale": scale}, space=space)
+
+
+def vector(space: str) -> Socket:
+    color = socket("TexNoise", "Color", {"Vector": socket("TexCoord", "Object"), "Scale": 2.0, "Detail": 0.0})
+    return socket("VectorDisplacement", 0, {"Vector": color, "Midlevel": 0.5, "Scale": 0.6}, space=space)
+
+
+U = socket("SeparateXYZ", "X", {0: socket("TexCoord", "UV")})
+NOISE, ALONG_U = noise(), socket("Displacement", 0, {"Height": U, "Midlevel": 0.0, "Scale": 0.4})
+"""ALONG_U is not the same on both sides of the map's seam."""
+
+
+def flat() -> None:
+    bpy.data.objects["Ball"].data.shade_flat()
+
+
+def other_half() -> None:
+    """Another material on half of the ball, which is displaced by something else and bumped."""
+    ball = bpy.data.objects["Ball"].data
+    ball.materials.append(surface("Other", noise(0.4), "BOTH"))
+    for face in ball.polygons:
+        face.material_index = int(face.center.x > 0.0)
+
+
+def subdivided(kind: str, space: str):
+    """Adaptive Subdivision of a coarse ball."""
+
+    def make() -> None:
+        old = bpy.data.objects["Ball"]
+        ball = stage.ball(old.data.materials[0], segments=8)
+        bpy.data.objects.remove(old)
+        modifier = ball.modifiers.new("Subdivision", "SUBSURF")
+        modifier.levels = modifier.render_levels = 2
+        modifier.subdivision_type, modifier.adaptive_space = kind, space
+        modifier.use_adaptive_subdivision, modifier.adaptive_object_edge_length = True, 0.05
+
+    return make
+
+
+def twin() -> None:
+    """A smaller object of the same mesh, turned round and mirrored."""
+    where = place(at=(-0.9, -0.6, 0.6), turn=(0.0, 60.0, 0.0), scale=(-0.5, 0.5, 0.4))
+    link_object(bpy.data.objects["Ball"].data, where, "Twin")
+
+
+displaced("only, noise", NOISE)
+displaced("and bump, noise", NOISE, "BOTH")
+displaced("only, flat faces", NOISE, prepare=flat)
+displaced("and bump, flat faces", NOISE, "BOTH", flat)
+displaced("along the seam of a UV map", ALONG_U)
+displaced("by Generated, world space", noise(0.3, "Generated", "WORLD"))
+displaced("two materials", ALONG_U, prepare=other_half)
+displaced("two objects of a mesh", NOISE, prepare=twin)
+displaced("Adaptive Subdivision", NOISE, prepare=subdivided("CATMULL_CLARK", "PIXEL"), warns=True)
+displaced("Adaptive Subdivision, simple, meters", NOISE, prepare=subdivided("SIMPLE", "OBJECT"), warns=True)
+for _space in ("OBJECT", "WORLD", "TANGENT"):
+    displaced(f"by a vector, {_space}", vector(_space))
