@@ -33,7 +33,7 @@ def all_paths():
     """Lists that keep every path: programs then run for all, as if there were no lists."""
     with (
         mock.patch.object(ActivePaths, "keep", lambda paths, rays: None),
-        mock.patch.object(ActivePaths, "take", lambda paths, others, rays: paths.fill(others.most)),
+        mock.patch.object(ActivePaths, "take", lambda paths, others, rays: paths.fill(others.capacity)),
     ):
         yield
 

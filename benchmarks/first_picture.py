@@ -78,12 +78,12 @@ def render(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
             found.add(kind == "result" or content["progress"]["iteration"] > 0)
             rendering.received()
         elif kind == "progress" and content["progress"]["iteration"] == 1:
-            rendering.want_picture()
+            rendering.request_picture()
 
     rendering = Rendering(context, library, Denoiser([]), take, KnownPrograms(), looks_first=True)
     found = Found()
     rendering.show(scene, 1, False)
-    rendering.want_picture()
+    rendering.request_picture()
     while found.true_light is None:
         rendering.run_slice()
     rendering.release()

@@ -103,7 +103,7 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
     plain = AccelerationStructure.trace
 
     def take(structure, rays, hits, active):
-        records = np.frombuffer(rays.read(RAY.size * active.most), RAY.dtype)[np.sort(active.read())]
+        records = np.frombuffer(rays.read(RAY.size * active.capacity), RAY.dtype)[np.sort(active.read())]
         taken.append(records[records["maximum_distance"] > 0.0])
         plain(structure, rays, hits, active)
 

@@ -155,7 +155,7 @@ class Subject:
         """Return the function that trace_times takes, for a cubemap."""
 
         def trace(rays, hits, count):
-            if self._listed.most != count:
+            if self._listed.capacity != count:
                 self._listed.fill(count)
             cubemap.trace(rays, hits, self._listed)
 
