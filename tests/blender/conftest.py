@@ -27,13 +27,42 @@ def scene(registered):
 
 
 @pytest.fixture
+def material(scene):
+    """A material whose tree has an output node and nothing else; its name is Material."""
+    from blender_scenes import new_material
+
+    return new_material()
+
+
+@pytest.fixture
+def tree(material):
+    """The node tree of the fixture ``material``."""
+    return material.node_tree
+
+
+@pytest.fixture
+def timers(monkeypatch):
+    """Functions that wait for their time; ``run_out`` calls each until it is done, as Blender's window does."""
+
+    class Timers(list):
+        def run_out(self):
+            for function in self:
+                while function() is not None:
+                    pass
+            self.clear()
+
+    waiting = Timers()
+    monkeypatch.setattr(bpy.app.timers, "register", lambda function, **_: waiting.append(function))
+    return waiting
+
+
+@pytest.fixture
 def lit(scene):
     """A white quad that fills the middle of the picture, under a sun: its radiance is 1 there."""
-    from blender_scenes import add_light, add_mesh, add_node, new_material, set_world, to_surface
+    from blender_scenes import add_light, add_mesh, new_material, set_world, surface
 
-    material = new_material("White")
-    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0)))
-    add_mesh(scene, "Quad").data.materials.append(material)
+    white, _ = surface("ShaderNodeBsdfDiffuse", material=new_material("White"), Color=(1.0, 1.0, 1.0, 1.0))
+    add_mesh(scene, "Quad", material=white)
     add_light(scene, "SUN", energy=np.pi, angle=0.0)
     set_world(scene)
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 4.0  # the quad takes the middle half

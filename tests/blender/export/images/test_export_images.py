@@ -6,8 +6,21 @@ import os
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, shaders, source, to_surface
-from test_export_lights import cycles_radiance
+from blender_scenes import (
+    add_mesh,
+    add_node,
+    added,
+    export,
+    export_graph,
+    link,
+    new_image,
+    save_png,
+    shaders,
+    source,
+    surface,
+    to_surface,
+)
+from cycles_light import cycles_radiance
 
 from rppm_addon.blender.export.images import kept_images
 from rppm_addon.blender.export.images.color_spaces import scene_linear
@@ -15,28 +28,15 @@ from rppm_addon.blender.export.images.images import MISSING
 from rppm_addon.scene.images import encode_srgb
 
 
-def new_image(name, pixels, is_float=False, space=None):
-    """pixels: (height, width, 4), as Blender stores them."""
-    height, width = pixels.shape[:2]
-    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
-    if space is not None:
-        image.colorspace_settings.name = space
-    image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
-    return image
-
-
 def textured(image, socket="Color", shader="ShaderNodeBsdfDiffuse", output="Color"):
-    material = new_material()
-    node = add_node(material.node_tree, shader)
-    texture = add_node(material.node_tree, "ShaderNodeTexImage", "Picture")
-    texture.image = image
+    material, node = surface(shader)
+    texture = add_node(material.node_tree, "ShaderNodeTexImage", "Picture", image=image)
     link(material.node_tree, texture.outputs[output], node.inputs[socket])
-    to_surface(material, node)
     return material
 
 
 def exported_image(scene, material):
-    add_mesh(scene).data.materials.append(material)
+    add_mesh(scene, material=material)
     exported = export(scene)
     (texture,) = (node for node in exported.materials[0].graph.nodes if node.kind == "tex_image")
     return exported.images[texture.image], texture, exported.warnings
@@ -68,29 +68,18 @@ def test_data_images_are_not_decoded(scene):
 
 def test_rows_run_from_the_bottom(scene):
     pixels = np.zeros((2, 1, 4))
-    pixels[0, 0] = (1.0, 0.0, 0.0, 1.0)
-    pixels[1, 0] = (0.0, 1.0, 0.0, 1.0)
+    pixels[:, 0] = (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0)
     image, _, _ = exported_image(scene, textured(new_image("Rows", pixels)))
     assert image.pixels[0, 0, 0] == 255 and image.pixels[1, 0, 1] == 255
 
 
-def test_saved_and_packed_images_agree(scene, tmp_path):
-    image = new_image("Saved", PIXELS)
-    image.filepath_raw, image.file_format = str(tmp_path / "saved.png"), "PNG"
-    image.save()
-    loaded = bpy.data.images.load(str(tmp_path / "saved.png"))
-    packed = bpy.data.images.load(str(tmp_path / "saved.png"), check_existing=False)
-    packed.pack()
-    material = new_material()
-    tree = material.node_tree
-    add = add_node(tree, "ShaderNodeAddShader")
-    for socket, picture in zip(add.inputs, (loaded, packed), strict=True):
-        node, texture = add_node(tree, "ShaderNodeBsdfDiffuse"), add_node(tree, "ShaderNodeTexImage")
-        texture.image = picture
-        link(tree, texture.outputs["Color"], node.inputs["Color"])
-        link(tree, node.outputs[0], socket)
-    to_surface(material, add)
-    add_mesh(scene).data.materials.append(material)
+def test_saved_and_packed_images_agree(scene, material, tree, tmp_path):
+    save_png(new_image("Saved", PIXELS), tmp_path / "saved.png")
+    images = [bpy.data.images.load(str(tmp_path / "saved.png"), check_existing=False) for _ in range(2)]
+    images[1].pack()
+    textures = (add_node(tree, "ShaderNodeTexImage", image=image).outputs["Color"] for image in images)
+    to_surface(material, added(tree, *(add_node(tree, "ShaderNodeBsdfDiffuse", Color=color) for color in textures)))
+    add_mesh(scene, material=material)
     exported = export(scene)
     assert len(exported.images) == 2
     np.testing.assert_array_equal(exported.images[0].pixels, exported.images[1].pixels)
@@ -104,14 +93,12 @@ def test_files_are_read_again_when_they_may_have_changed(scene, tmp_path, monkey
 
     def save(pixels):
         made = new_image("Made", pixels)
-        made.filepath_raw, made.file_format = path, "PNG"
-        made.save()
+        save_png(made, path)
         bpy.data.images.remove(made)
 
     save(PIXELS)
     image = bpy.data.images.load(path)
-    material = textured(image)
-    add_mesh(scene).data.materials.append(material)
+    add_mesh(scene, material=textured(image))
     first = export(scene).images[0]
     assert export(scene).images[0] is first
     flipped = PIXELS[::-1].copy()
@@ -129,13 +116,13 @@ def test_files_are_read_again_when_they_may_have_changed(scene, tmp_path, monkey
     assert export(scene).images[0] is export(scene).images[0]
     kept_images.unregister()
     kept_images.register()
-    assert not kept_images._kept
+    assert kept_images.kept(image) is None
 
 
 def test_an_image_used_twice_is_exported_once(scene):
     image = new_image("Shared", PIXELS)
     for name in ("First", "Second"):
-        add_mesh(scene, name).data.materials.append(textured(image))
+        add_mesh(scene, name, material=textured(image))
     exported = export(scene)
     assert len(exported.images) == 1 and len(exported.materials) == 2
 
@@ -160,11 +147,7 @@ def test_a_file_that_is_no_picture(scene, tmp_path):
     path.write_bytes(b"\x89PNG and no more")
     image = bpy.data.images.new("damaged.png", 4, 4)
     image.source, image.filepath = "FILE", str(path)
-    material = new_material()
-    node = add_node(material.node_tree, "ShaderNodeTexImage")
-    node.image = image
-    to_surface(material, node)
-    add_mesh(scene).data.materials.append(material)
+    add_mesh(scene, material=textured(image))
     (text,) = export(scene).warnings
     assert "damaged.png" in text and "cannot read" in text and "save it anew" in text and "missing" not in text.lower()
 
@@ -188,9 +171,8 @@ def test_texture_without_an_image(scene):
 def test_placement_by_a_mapping(scene):
     material = textured(new_image("Image", PIXELS))
     tree = material.node_tree
-    mapping = add_node(tree, "ShaderNodeMapping", "Shift", Location=(0.25, 0.5, 0.0))
-    coordinates = add_node(tree, "ShaderNodeTexCoord")
-    link(tree, coordinates.outputs["UV"], mapping.inputs["Vector"])
+    place = add_node(tree, "ShaderNodeTexCoord").outputs["UV"]
+    mapping = add_node(tree, "ShaderNodeMapping", "Shift", Location=(0.25, 0.5, 0.0), Vector=place)
     link(tree, mapping.outputs[0], tree.nodes["Picture"].inputs["Vector"])
     graph, warnings = export_graph(scene, material)
     (texture,) = (node for node in graph.nodes if node.kind == "tex_image")
@@ -203,22 +185,18 @@ def test_placement_by_a_mapping(scene):
 @pytest.mark.parametrize("alpha_mode", ["STRAIGHT", "CHANNEL_PACKED", "NONE"])
 @pytest.mark.parametrize("linked", [False, True])
 def test_transparent_colors_are_those_of_cycles(scene, tmp_path, space, alpha_mode, linked):
-    saved = new_image("Saved", np.full((4, 4, 4), (1.0, 0.5, 0.25, 0.5)))
-    saved.filepath_raw, saved.file_format = str(tmp_path / "alpha.png"), "PNG"
-    saved.save()
+    save_png(new_image("Saved", np.full((4, 4, 4), (1.0, 0.5, 0.25, 0.5))), tmp_path / "alpha.png")
     image = bpy.data.images.load(str(tmp_path / "alpha.png"))
     image.alpha_mode, image.colorspace_settings.name = alpha_mode, space
     material = textured(image, shader="ShaderNodeEmission")
     tree = material.node_tree
     if linked:  # to a strength of 1, whatever the alpha is
-        greater = add_node(tree, "ShaderNodeMath")
+        # MAXIMUM: what Cycles could do without at once would not count as linked
+        alpha = tree.nodes["Picture"].outputs["Alpha"]
+        greater = add_node(tree, "ShaderNodeMath", operation="MAXIMUM", Value=alpha)
         greater.inputs[1].default_value = 1.0
-        greater.operation = "MAXIMUM"  # what Cycles could do without at once would not count as linked
-        link(tree, tree.nodes["Picture"].outputs["Alpha"], greater.inputs[0])
         link(tree, greater.outputs[0], tree.nodes["Emission"].inputs["Strength"])
-    quad = add_mesh(scene)
-    quad.data.uv_layers.new()
-    quad.data.materials.append(material)
+    add_mesh(scene, material=material).data.uv_layers.new()
     exported = export(scene)
     (picture,) = exported.images
     (texture,) = (node for node in exported.materials[0].graph.nodes if node.kind == "tex_image")
@@ -279,5 +257,5 @@ def test_a_pipe_is_no_image(scene, tmp_path, source_kind):
     os.mkfifo(tmp_path / "pipe_0001.png")
     image = bpy.data.images.new("Pipe", 1, 1)
     image.source, image.filepath = source_kind, str(tmp_path / "pipe_0001.png")
-    add_mesh(scene).data.materials.append(textured(image))
+    add_mesh(scene, material=textured(image))
     assert any("pipe_0001.png" in text and "is missing" in text for text in export(scene).warnings)

@@ -6,7 +6,19 @@ import math
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
+from blender_scenes import (
+    add_light,
+    add_mesh,
+    add_node,
+    collect,
+    depsgraph,
+    export,
+    link,
+    set_world,
+    show_collection,
+    surface,
+)
+from cycles_light import cycles_radiance
 from emission import light_strength
 
 from rppm_addon.blender.export.updates.sync import SceneSync
@@ -16,13 +28,10 @@ from rppm_addon.scene.meshes import RayVisibility
 
 
 def exported_light(scene, kind, **values):
-    scale = values.pop("scale", None)
-    added = add_light(scene, kind, **values)
-    if scale is not None:
-        added.scale = scale
-    lights = export(scene).lights
-    assert len(lights) == 1
-    return lights[0]
+    scale = values.pop("scale", (1.0, 1.0, 1.0))
+    add_light(scene, kind, **values).scale = scale
+    (light,) = export(scene).lights
+    return light
 
 
 @pytest.mark.parametrize("kind", ["POINT", "SPOT"])
@@ -76,30 +85,26 @@ def test_photon_share_and_visibility(scene):
 
 
 def test_instanced_lights(scene):
-    added = add_light(scene, "POINT")
-    collection = bpy.data.collections.new("Lights")
-    collection.objects.link(added)
-    scene.collection.objects.unlink(added)
+    collection = collect(scene, add_light(scene, "POINT"))
     for x in (1.0, 2.0):
-        empty = bpy.data.objects.new("Empty", None)
-        empty.instance_type, empty.instance_collection, empty.location = "COLLECTION", collection, (x, 0.0, 0.0)
-        scene.collection.objects.link(empty)
+        show_collection(scene, collection, location=(x, 0.0, 0.0))
     assert sorted(light.matrix[0, 3] for light in export(scene).lights) == [1.0, 2.0]
 
 
+def with_nodes(scene, kind, **values):
+    """The data of a light with nodes, the tree, and its Emission node."""
+    data = add_light(scene, kind, **values).data
+    data.use_nodes = True
+    return data.node_tree, data.node_tree.nodes["Emission"]
+
+
 def test_light_nodes_multiply(scene):
-    added = add_light(scene, "POINT", energy=4.0 * math.pi)
-    added.data.use_nodes = True
-    emission = added.data.node_tree.nodes["Emission"]
+    tree, emission = with_nodes(scene, "POINT", energy=4.0 * math.pi)
     emission.inputs["Color"].default_value = (0.5, 1.0, 0.0, 1.0)
     emission.inputs["Strength"].default_value = 3.0
     np.testing.assert_allclose(light_strength(export(scene)), (1.5, 3.0, 0.0))
-    noise = add_node(added.data.node_tree, "ShaderNodeTexNoise", "Flicker")
-    link(
-        added.data.node_tree,
-        noise.outputs["Fac" if bpy.app.version < (5, 0) else "Factor"],
-        emission.inputs["Strength"],
-    )
+    noise = add_node(tree, "ShaderNodeTexNoise", "Flicker")
+    link(tree, noise.outputs["Fac" if bpy.app.version < (5, 0) else "Factor"], emission.inputs["Strength"])
     exported = export(scene)
     assert not exported.warnings and light_variation(exported.lights[0].graph).place
     assert 0.0 < light_strength(exported)[1] < 1.0
@@ -107,12 +112,10 @@ def test_light_nodes_multiply(scene):
 
 def test_light_nodes_of_place_and_direction_at_once(scene):
     """Maps have two axes: an area light whose emission depends on four numbers says what is left out."""
-    added = add_light(scene, "AREA")
-    added.data.use_nodes = True
-    tree = added.data.node_tree
+    tree, emission = with_nodes(scene, "AREA")
     geometry, product = (add_node(tree, f"ShaderNode{name}") for name in ("NewGeometry", "VectorMath"))
     link(tree, geometry.outputs["Incoming"], product.inputs[0])
-    link(tree, product.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    link(tree, product.outputs[0], emission.inputs["Color"])
     exported = export(scene)
     assert not exported.warnings and light_variation(exported.lights[0].graph).direction
     link(tree, geometry.outputs["Position"], product.inputs[1])
@@ -145,20 +148,21 @@ def test_portals_give_no_light(scene, energy):
 
 def test_a_viewport_follows_portals(scene):
     """One that is moved, or no longer is one."""
-    sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    camera = export(scene).camera
+    sync, camera = SceneSync(), export(scene).camera
+
+    def light():
+        scene.view_layers[0].update()
+        (light,) = sync.update(depsgraph(), camera).lights
+        return light
+
     added = add_light(scene, "AREA", energy=50.0)
     added.data.cycles.is_portal = True
     for x in (0.0, 2.0):
         added.location.x = x
-        depsgraph.update()
-        (light,) = sync.update(depsgraph, camera).lights
-        assert light.is_portal and light.matrix[0, 3] == x
+        assert light().is_portal and light().matrix[0, 3] == x
     added.data.cycles.is_portal = False
     added.data.update_tag()
-    depsgraph.update()
-    (light,) = sync.update(depsgraph, camera).lights
-    assert not light.is_portal and light.strength.all()
+    assert not light().is_portal and light().strength.all()
 
 
 def test_area_light_without_area(scene):
@@ -192,9 +196,8 @@ def test_irradiance_agrees_with_cycles(scene, kind, values, tmp_path):
     distance = 10.0
     added.location = (0.0, 0.0, distance)
     set_world(scene)
-    white = new_material("White")
-    to_surface(white, add_node(white.node_tree, "ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0)))
-    add_mesh(scene).data.materials.append(white)
+    white, _ = surface("ShaderNodeBsdfDiffuse", Color=(1.0, 1.0, 1.0, 1.0))
+    add_mesh(scene, material=white)
     (light,) = export(scene).lights
     if light.kind is LightKind.SUN:
         expected = light.strength
@@ -204,23 +207,3 @@ def test_irradiance_agrees_with_cycles(scene, kind, values, tmp_path):
     else:
         expected = light.strength / (distance**2 + light.radius**2)  # Cycles' soft falloff: a facing disk
     np.testing.assert_allclose(cycles_radiance(scene, tmp_path) * math.pi, expected, rtol=3e-3)
-
-
-def cycles_radiance(scene, folder):
-    """Mean radiance of a millimeter around the origin from above, by Cycles, (3,)."""
-    import OpenEXR
-
-    render = scene.render
-    render.engine = "CYCLES"
-    scene.cycles.device, scene.cycles.samples, scene.cycles.max_bounces = "CPU", 256, 0
-    scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
-    scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 0.002
-    render.resolution_x = render.resolution_y = 4
-    if hasattr(render.image_settings, "media_type"):
-        render.image_settings.media_type = "IMAGE"
-    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-    render.filepath = str(folder / "plane.exr")
-    bpy.ops.render.render(write_still=True)
-    with OpenEXR.File(render.filepath) as file:
-        pixels = next(iter(file.channels().values())).pixels
-    return pixels[..., :3].reshape(-1, 3).mean(axis=0)

@@ -5,15 +5,17 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import (
+    CAMERA,
     add_mesh,
     add_node,
     add_object,
+    depsgraph,
     export,
+    following,
     geometry_nodes,
-    link,
     multiply_cubes,
     new_material,
-    to_surface,
+    surface,
 )
 from support.moving import FRAME, animate, blur, taken_scene
 
@@ -64,15 +66,11 @@ def add_hair(scene, children="NONE"):
 def asking(*outputs):
     """A material that asks for outputs of Hair Info."""
     material = new_material("Asking")
-    add = add_node(material.node_tree, "ShaderNodeVectorMath")
-    add.operation = "MULTIPLY_ADD"
+    add = add_node(material.node_tree, "ShaderNodeVectorMath", operation="MULTIPLY_ADD")
     info = add_node(material.node_tree, "ShaderNodeHairInfo")
     for output, socket in zip(outputs, add.inputs, strict=False):
-        link(material.node_tree, info.outputs[output], socket)
-    emission = add_node(material.node_tree, "ShaderNodeEmission")
-    link(material.node_tree, add.outputs[0], emission.inputs["Color"])
-    to_surface(material, emission)
-    return material
+        material.node_tree.links.new(info.outputs[output], socket)
+    return surface("ShaderNodeEmission", material=material, Color=add.outputs[0])[0]
 
 
 @pytest.mark.parametrize("sides", [3, 5, 7, 11])
@@ -154,11 +152,8 @@ def test_hair_curves_are_tubes_with_what_nodes_ask_for(scene):
 def asking_for(name):
     """A material that asks for an attribute."""
     material = new_material(name)
-    attribute, emission = (add_node(material.node_tree, f"ShaderNode{kind}") for kind in ("Attribute", "Emission"))
-    attribute.attribute_name = name
-    link(material.node_tree, attribute.outputs["Fac"], emission.inputs["Strength"])
-    to_surface(material, emission)
-    return material
+    attribute = add_node(material.node_tree, "ShaderNodeAttribute", attribute_name=name)
+    return surface("ShaderNodeEmission", material=material, Strength=attribute.outputs["Fac"])[0]
 
 
 @pytest.mark.parametrize("name", ["uv", "read", "vertices"])
@@ -270,10 +265,9 @@ def test_hair_in_memory_is_what_blenders_function_says(scene, monkeypatch):
 def test_slices_export_the_same(scene):
     add_curves(scene, *helices())
     add_hair(scene, "SIMPLE")
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    camera, whole, sliced = export(scene).camera, SceneSync(), SceneSync()
-    whole.update(depsgraph, camera)
-    while sliced.advance(depsgraph, camera, seconds=0.0) is not None:
+    whole, sliced = SceneSync(), SceneSync()
+    whole.update(depsgraph(), CAMERA)
+    while sliced.advance(depsgraph(), CAMERA, seconds=0.0) is not None:
         pass
     assert len(sliced.scene.instances) == len(whole.scene.instances) == 3
     for one, other in zip(whole.scene.meshes, sliced.scene.meshes, strict=True):
@@ -284,14 +278,9 @@ def test_slices_export_the_same(scene):
 @pytest.fixture
 def synced(scene):
     """A SceneSync that is told of all updates."""
-    camera, sync = export(scene).camera, SceneSync()
-
-    def follow(_, depsgraph):
-        sync.update(depsgraph, camera)
-
-    bpy.app.handlers.depsgraph_update_post.append(follow)
-    yield sync
-    bpy.app.handlers.depsgraph_update_post.remove(follow)
+    sync = SceneSync()
+    with following(lambda graph: sync.update(graph, CAMERA)):
+        yield sync
 
 
 def test_a_viewport_follows_curves_and_their_settings(scene, synced):

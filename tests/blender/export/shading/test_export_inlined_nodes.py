@@ -8,7 +8,17 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_mesh, add_node, export, export_graph, link, new_material, to_surface
+from blender_scenes import (
+    add_mesh,
+    add_node,
+    export,
+    export_graph,
+    link,
+    new_material,
+    node_group,
+    surface,
+    to_surface,
+)
 
 from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext
@@ -20,16 +30,13 @@ pytestmark = pytest.mark.skipif(bpy.app.version < (5, 0), reason="Blender 5 is t
 SOLVED_HERE = {"NodeFrame", "NodeGroupInput", "NodeGroupOutput", "NodeReroute"}
 
 
-def glowing(material):
-    node = add_node(material.node_tree, "ShaderNodeEmission", "Glow")
-    to_surface(material, node)
-    return node
+def glowing(material, **given):
+    return surface("ShaderNodeEmission", "Glow", material, **given)[1]
 
 
 def menu_switch(tree, choice="A"):
     """A color by a menu: A is red, B is blue."""
-    node = add_node(tree, "GeometryNodeMenuSwitch", "Switch")
-    node.data_type = "RGBA"
+    node = add_node(tree, "GeometryNodeMenuSwitch", "Switch", data_type="RGBA")
     node.inputs["Menu"].default_value = choice
     node.inputs["A"].default_value, node.inputs["B"].default_value = (1.0, 0.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)
     return node
@@ -44,11 +51,9 @@ def repeat_zone(tree, iterations, kind="FLOAT"):
     return first, last
 
 
-def add_group(tree, name="Group"):
-    group = bpy.data.node_groups.new(name, "ShaderNodeTree")
-    node = tree.nodes.new("ShaderNodeGroup")
-    node.node_tree = group
-    return node, group
+def add_group(tree, **sockets):
+    group, _, _ = node_group(**sockets)
+    return add_node(tree, "ShaderNodeGroup", node_tree=group), group
 
 
 def emitted(scene):
@@ -78,8 +83,7 @@ def test_every_node_that_is_no_shader_node_is_resolved():
     assert {"GeometryNodeRepeatInput", "NodeEvaluateClosure", "NodeCombineBundle", "GeometryNodeMenuSwitch"} <= asked
 
 
-def test_other_trees_are_read_as_they_are(scene):
-    material = new_material()
+def test_other_trees_are_read_as_they_are(scene, material):
     glowing(material)
     _, group = add_group(material.node_tree)
     group.nodes.new("ShaderNodeTexNoise")
@@ -90,19 +94,14 @@ def test_other_trees_are_read_as_they_are(scene):
     assert readable_tree(material).owner is not None
 
 
-def test_edits_and_animation_are_seen(scene):
-    material = new_material()
-    glow = glowing(material)
-    switch = menu_switch(material.node_tree)
-    link(material.node_tree, switch.outputs[0], glow.inputs["Color"])
-    first, last = repeat_zone(material.node_tree, 2)
-    double = add_node(material.node_tree, "ShaderNodeMath")
-    double.operation = "ADD"
-    double.inputs[1].default_value = 0.5
-    link(material.node_tree, first.outputs["Item"], double.inputs[0])
-    link(material.node_tree, double.outputs[0], last.inputs["Item"])
-    link(material.node_tree, last.outputs["Item"], glow.inputs["Strength"])
-    add_mesh(scene).data.materials.append(material)
+def test_edits_and_animation_are_seen(scene, material, tree):
+    switch = menu_switch(tree)
+    first, last = repeat_zone(tree, 2)
+    more = add_node(tree, "ShaderNodeMath", operation="ADD", Value=first.outputs["Item"])
+    more.inputs[1].default_value = 0.5
+    link(tree, more.outputs[0], last.inputs["Item"])
+    glowing(material, Color=switch.outputs[0], Strength=last.outputs["Item"])
+    add_mesh(scene, material=material)
     assert emitted(scene) == {"color": (1.0, 0.0, 0.0), "strength": 1.0}
     switch.inputs["Menu"].default_value = "B"
     assert emitted(scene)["color"] == (0.0, 0.0, 1.0)
@@ -115,21 +114,17 @@ def test_edits_and_animation_are_seen(scene):
         assert emitted(scene)["strength"] == strength
 
 
-def test_warnings_name_the_users_nodes(scene):
+def test_warnings_name_the_users_nodes(scene, material, tree):
     """Once, also of a node in a zone that is unrolled, in a group."""
-    material = new_material()
-    tree = material.node_tree
-    used, group = add_group(tree)
-    group.interface.new_socket("Surface", in_out="OUTPUT", socket_type="NodeSocketShader")
+    used, group = add_group(tree, outputs=[("Surface", "Shader")])
     first, last = repeat_zone(group, 3, "SHADER")
-    odd, both = add_node(group, "ShaderNodeEeveeSpecular", "2_Odd"), group.nodes.new("ShaderNodeAddShader")
+    both = group.nodes.new("ShaderNodeAddShader")
     link(group, first.outputs["Item"], both.inputs[0])
-    link(group, odd.outputs[0], both.inputs[1])
+    link(group, add_node(group, "ShaderNodeEeveeSpecular", "2_Odd").outputs[0], both.inputs[1])
     link(group, both.outputs[0], last.inputs["Item"])
-    link(group, last.outputs["Item"], group.nodes.new("NodeGroupOutput").inputs["Surface"])
+    link(group, last.outputs["Item"], group.nodes["Group Output"].inputs["Surface"])
     to_surface(material, used)
-    lost = tree.nodes.new("ShaderNodeGroup")
-    lost.name = "Lost"
+    add_node(tree, "ShaderNodeGroup", "Lost")
     graph, warnings = export_graph(scene, material)
     assert [node.name for node in graph.nodes].count("2_Odd") == 1  # it does not depend on the round
     assert len(warnings) == 2
@@ -137,29 +132,22 @@ def test_warnings_name_the_users_nodes(scene):
     assert sum('node "Lost" (GROUP) is a group whose node tree is missing' in text for text in warnings) == 1
 
 
-def test_trees_with_links_in_a_circle_are_read_all_the_same(scene):
+def test_trees_with_links_in_a_circle_are_read_all_the_same(scene, material, tree):
     """Blender makes nothing of them."""
-    material = new_material()
-    tree = material.node_tree
-    glow = glowing(material)
-    first, second = add_node(tree, "ShaderNodeMath", "First"), add_node(tree, "ShaderNodeMath", "Second")
-    link(tree, first.outputs[0], second.inputs[0])
+    first = add_node(tree, "ShaderNodeMath", "First")
+    second = add_node(tree, "ShaderNodeMath", "Second", Value=first.outputs[0])
     link(tree, second.outputs[0], first.inputs[0])
-    link(tree, second.outputs[0], glow.inputs["Strength"])
-    link(tree, menu_switch(tree).outputs[0], glow.inputs["Color"])
+    glowing(material, Strength=second.outputs[0], Color=menu_switch(tree).outputs[0])
     graph, warnings = export_graph(scene, material)
     assert any('node "Switch" (MENU_SWITCH)' in text for text in warnings)
     assert graph.nodes[graph.surface.node].kind == "emission"
 
 
-def test_passes_of_groups_are_kept(scene):
-    material = new_material()
-    tree = material.node_tree
-    link(tree, menu_switch(tree, "B").outputs[0], glowing(material).inputs["Color"])
+def test_passes_of_groups_are_kept(scene, material, tree):
+    glowing(material, Color=menu_switch(tree, "B").outputs[0])
     _, group = add_group(tree)
-    aov = group.nodes.new("ShaderNodeOutputAOV")
-    aov.aov_name = "Height"
-    link(group, group.nodes.new("ShaderNodeTexNoise").outputs[0], aov.inputs["Value"])
+    noise = add_node(group, "ShaderNodeTexNoise")
+    add_node(group, "ShaderNodeOutputAOV", aov_name="Height", Value=noise.outputs[0])
     graph, warnings = export_graph(scene, material)
     (output,) = graph.aovs
     assert output.name == "Height" and graph.nodes[output.value.node].kind == "tex_noise"

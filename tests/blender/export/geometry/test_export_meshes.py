@@ -4,7 +4,19 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_object, export, new_material
+from blender_scenes import (
+    add_mesh,
+    add_node,
+    add_object,
+    collect,
+    depsgraph,
+    export,
+    geometry_nodes,
+    link,
+    new_material,
+    node_group,
+    show_collection,
+)
 
 from rppm_addon.blender.export.geometry.meshes import element_arrays
 
@@ -52,19 +64,16 @@ def assert_same(exported, mesh):
 
 
 def evaluated(source):
-    return source.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    return source.evaluated_get(depsgraph()).data
 
 
-def monkey(scene, **values):
+def monkey():
     bpy.ops.mesh.primitive_monkey_add()
-    source = bpy.context.object
-    for key, value in values.items():
-        setattr(source, key, value)
-    return source
+    return bpy.context.object
 
 
 def test_arrays_equal_the_naive_reading(scene):
-    source = monkey(scene)
+    source = monkey()
     for polygon in source.data.polygons:
         polygon.material_index = polygon.index % 3
         polygon.use_smooth = polygon.index % 2 == 0
@@ -77,8 +86,7 @@ def test_arrays_equal_the_naive_reading(scene):
 
 def test_modifiers_are_applied(scene):
     source = add_mesh(scene)
-    array = source.modifiers.new("Array", "ARRAY")
-    array.count = 5
+    source.modifiers.new("Array", "ARRAY").count = 5
     source.modifiers.new("Subdivision", "SUBSURF").render_levels = 1
     exported = export(scene)
     assert exported.meshes[0].triangle_count > 5 * 2
@@ -146,20 +154,16 @@ def surface_object(scene):
     return bpy.context.object
 
 
-MAKERS = [text_object, curve_object, metaball_object, surface_object]
-
-
-@pytest.mark.parametrize("make", MAKERS)
+@pytest.mark.parametrize("make", [text_object, curve_object, metaball_object, surface_object])
 def test_what_evaluates_to_a_mesh_is_exported_once(scene, make):
     source = make(scene)
     source.location = (1.0, 2.0, 3.0)
-    material = new_material("Own")
-    source.data.materials.append(material)
+    source.data.materials.append(new_material("Own"))
     exported = export(scene)
     (instance,) = exported.instances
     np.testing.assert_allclose(instance.matrix[:3, 3], (1.0, 2.0, 3.0))
     assert exported.materials[instance.materials[0]].name == "Own"
-    reference = source.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    reference = source.evaluated_get(depsgraph())
     assert_same(exported.meshes[instance.mesh], reference.to_mesh())
     reference.to_mesh_clear()
 
@@ -167,20 +171,16 @@ def test_what_evaluates_to_a_mesh_is_exported_once(scene, make):
 @pytest.mark.parametrize("make", [text_object, curve_object, surface_object])
 def test_converted_objects_are_multiplied_by_faces_and_collections(scene, make):
     source = make(scene)
-    collection = bpy.data.collections.new("Instanced")
-    collection.objects.link(source)
-    scene.collection.objects.unlink(source)
-    for index in range(2):
-        empty = add_object(scene, f"Empty{index}", None, location=(0.0, 0.0, index))
-        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    collection = collect(scene, source)
+    empties = [show_collection(scene, collection, location=(0.0, 0.0, index)) for index in range(2)]
     exported = export(scene)
     assert len(exported.instances) == 2 and len(exported.meshes) == 1
     assert sorted(instance.matrix[2, 3] for instance in exported.instances) == [0.0, 1.0]
 
     scene.collection.objects.link(source)
-    for index in range(2):
-        bpy.data.objects.remove(bpy.data.objects[f"Empty{index}"])
-    parent = add_mesh(scene, "Parent", *two_quads())
+    for empty in empties:
+        bpy.data.objects.remove(empty)
+    parent = add_mesh(scene, "Parent", *TWO_QUADS)
     parent.instance_type = "FACES"
     source.parent = parent
     exported = export(scene)
@@ -190,44 +190,36 @@ def test_converted_objects_are_multiplied_by_faces_and_collections(scene, make):
     assert len({exported.meshes[instance.mesh].triangle_count for instance in of_source}) == 1
 
 
-def two_quads():
-    return [(-1, -1, 0), (0, -1, 0), (0, 0, 0), (-1, 0, 0), (1, 1, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0)], [
-        (0, 1, 2, 3),
-        (4, 5, 6, 7),
-    ]
+TWO_QUADS = (
+    [(-1, -1, 0), (0, -1, 0), (0, 0, 0), (-1, 0, 0), (1, 1, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0)],
+    [(0, 1, 2, 3), (4, 5, 6, 7)],
+)
 
 
-def test_elements_are_read_by_pointer_only_where_that_is_right(scene, monkeypatch):
-    mesh = evaluated(monkey(scene))
-    mesh.calc_loop_triangles()
-    triangles = mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32
-    assert element_arrays.view_is_right(*triangles)
-    by_pointer = element_arrays.elements(*triangles).copy()
-    key = type(mesh.loop_triangles[0]).__name__, "loops"
-    monkeypatch.setitem(element_arrays._views_are_right, key, False)
-    np.testing.assert_array_equal(element_arrays.elements(*triangles), by_pointer)
-    # Another layout must be noticed, and then not be used.
-    monkeypatch.delitem(element_arrays._views_are_right, key)
-    monkeypatch.setattr(element_arrays, "_by_pointer", lambda *_: by_pointer[:, ::-1])
-    np.testing.assert_array_equal(element_arrays.elements(*triangles), by_pointer)
-    assert element_arrays._views_are_right[key] is False
+def test_elements_that_do_not_lie_in_a_row_are_read_all_the_same(scene):
+    """Objects, unlike elements of a mesh, are each in a place of their own."""
+    for number in range(3):
+        add_object(scene, "Object", None, location=(number, 2.0, 3.0))
+    places = bpy.data.objects, "location", len(bpy.data.objects), 3, np.float32
+    assert not element_arrays.view_is_right(*places)
+    np.testing.assert_array_equal(element_arrays.elements(*places), [tuple(o.location) for o in bpy.data.objects])
 
 
 @pytest.mark.parametrize("collection", ["loop_triangles", "loop_triangle_polygons", "corner_normals", "uv", "position"])
 def test_all_that_meshes_are_made_of_lies_in_a_row(scene, collection):
-    mesh = evaluated(monkey(scene))
+    mesh = evaluated(monkey())
     mesh.calc_loop_triangles()
-    if collection == "uv":
-        arguments = mesh.uv_layers[0].uv, "vector", len(mesh.loops), 2, np.float32
-    elif collection == "position":
-        arguments = mesh.attributes["position"].data, "vector", len(mesh.vertices), 3, np.float32
-    elif collection == "corner_normals":
-        arguments = mesh.corner_normals, "vector", len(mesh.loops), 3, np.float32
-    elif collection == "loop_triangles":
-        arguments = mesh.loop_triangles, "loops", len(mesh.loop_triangles), 3, np.int32
-    else:
-        arguments = mesh.loop_triangle_polygons, "value", len(mesh.loop_triangles), 1, np.int32
+    corners, triangles = len(mesh.loops), len(mesh.loop_triangles)
+    arguments = {
+        "uv": lambda: (mesh.uv_layers[0].uv, "vector", corners, 2, np.float32),
+        "position": lambda: (mesh.attributes["position"].data, "vector", len(mesh.vertices), 3, np.float32),
+        "corner_normals": lambda: (mesh.corner_normals, "vector", corners, 3, np.float32),
+        "loop_triangles": lambda: (mesh.loop_triangles, "loops", triangles, 3, np.int32),
+        "loop_triangle_polygons": lambda: (mesh.loop_triangle_polygons, "value", triangles, 1, np.int32),
+    }[collection]()
     assert element_arrays.view_is_right(*arguments)
+    asked = [getattr(element, arguments[1]) for element in arguments[0]]
+    np.testing.assert_array_equal(element_arrays.elements(*arguments), asked)
 
 
 def test_one_triangle_and_no_triangle(scene):
@@ -258,7 +250,7 @@ def test_only_a_last_modifier_that_is_shown_divides_adaptively(scene):
     assert dicing() is None
 
 
-def cut_away(scene, source):
+def cut_away(source):
     """A modifier that leaves nothing of an object."""
     source.vertex_groups.new(name="None")
     source.modifiers.new("Mask", "MASK").vertex_group = "None"
@@ -266,24 +258,20 @@ def cut_away(scene, source):
 
 def test_an_object_of_whose_faces_nothing_is_left_is_named(scene):
     first, second = add_mesh(scene, "First"), add_mesh(scene, "Second")
-    cut_away(scene, first)
+    cut_away(first)
     exported = export(scene)
     assert [instance.object_name for instance in exported.instances] == ["Second"]
     (warning,) = exported.warnings
     assert 'Object "First": its modifiers leave no faces' in warning
-    cut_away(scene, second)
+    cut_away(second)
     (warning,) = export(scene).warnings
     assert 'Objects "First", "Second": their modifiers leave no faces' in warning
 
 
 def test_a_multiplied_object_of_whose_faces_nothing_is_left_is_named(scene):
     source = add_mesh(scene, "Source")
-    cut_away(scene, source)
-    collection = bpy.data.collections.new("Instanced")
-    collection.objects.link(source)
-    scene.collection.objects.unlink(source)
-    empty = add_object(scene, "Empty", None)
-    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    cut_away(source)
+    show_collection(scene, collect(scene, source))
     (warning,) = export(scene).warnings
     assert 'Object "Source": its modifiers leave no faces' in warning
 
@@ -293,28 +281,16 @@ def test_meshes_without_faces_are_as_they_are_meant(scene):
     add_mesh(scene, "Edges", [(0, 0, 0), (1, 0, 0)], [])
     add_mesh(scene, "Empty", [], [])
     points = add_mesh(scene, "Points")
-    tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
-    for way in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    before, multiply, cube, after = (
-        tree.nodes.new(kind)
-        for kind in ("NodeGroupInput", "GeometryNodeInstanceOnPoints", "GeometryNodeMeshCube", "NodeGroupOutput")
-    )
-    tree.links.new(before.outputs[0], multiply.inputs["Points"])
-    tree.links.new(cube.outputs[0], multiply.inputs["Instance"])
-    tree.links.new(multiply.outputs[0], after.inputs[0])
-    points.modifiers.new("Points", "NODES").node_group = tree
+    (multiply,) = geometry_nodes(points, "GeometryNodeInstanceOnPoints")
+    cube = add_node(multiply.id_data, "GeometryNodeMeshCube")
+    link(multiply.id_data, cube.outputs[0], multiply.inputs["Instance"])
     exported = export(scene)
     assert exported.warnings == [] and len(exported.instances) == 4
 
 
 def test_a_mesh_that_nodes_make_a_volume_of_is_named_once(scene):
-    source = add_mesh(scene, "Cloud")
-    tree = bpy.data.node_groups.new("Cloud", "GeometryNodeTree")
-    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    cube, after = tree.nodes.new("GeometryNodeVolumeCube"), tree.nodes.new("NodeGroupOutput")
-    cube.inputs["Density"].default_value = 1.0
-    tree.links.new(cube.outputs[0], after.inputs[0])
-    source.modifiers.new("Cloud", "NODES").node_group = tree
+    tree, _, last = node_group(outputs=[("Geometry", "Geometry")], tree_type="GeometryNodeTree")
+    link(tree, add_node(tree, "GeometryNodeVolumeCube", Density=1.0).outputs[0], last.inputs[0])
+    add_mesh(scene, "Cloud").modifiers.new("Cloud", "NODES").node_group = tree
     (warning,) = export(scene).warnings
     assert 'Object "Cloud": volumes are not rendered yet' in warning

@@ -5,7 +5,7 @@ import dataclasses
 
 import bpy
 import pytest
-from blender_scenes import add_light, export
+from blender_scenes import add_light, add_object, export
 
 from rppm_addon.blender.export.view_layer.settings import export_settings
 from rppm_addon.blender.properties import VIEWPORT_APART, VIEWPORT_DENOISING, VIEWPORT_SAMPLING, viewport_property
@@ -17,16 +17,9 @@ ELSEWHERE = {"film_transparent", "passes", "aovs", "light_groups", "denoising_st
 # what a bake holds, what makes the seed another one, a member of the scene, an object of Blender's, exported as a
 # point, and what viewports have apart
 BESIDES = {
-    "bake_type",
-    "use_animated_seed",
-    "film_exposure",
-    "checkpoint_path",
-    "cubemap_center_object",
-    "preview_samples",
-    "preview_photons",
-    "preview_pause",
-    *(viewport_property(name) for name in VIEWPORT_APART),
-}
+    "bake_type", "use_animated_seed", "film_exposure", "checkpoint_path", "cubemap_center_object", "preview_samples",
+    "preview_photons", "preview_pause", *(viewport_property(name) for name in VIEWPORT_APART),
+}  # fmt: skip
 
 
 def test_properties_are_the_settings_with_their_defaults(scene):
@@ -37,11 +30,9 @@ def test_properties_are_the_settings_with_their_defaults(scene):
     assert properties == {infos[name].property_of(name) for name in names - ELSEWHERE} | BESIDES
     found, expected = export(scene).settings, RenderSettings()
     for name in names - {"passes"}:
-        assert getattr(found, name) == pytest.approx(getattr(expected, name)) if name == "alpha" else True
-        if isinstance(getattr(expected, name), float):
-            assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-6)
-        else:
-            assert getattr(found, name) == getattr(expected, name)
+        value = getattr(expected, name)
+        value = pytest.approx(value, rel=1e-6) if isinstance(value, float) else value
+        assert getattr(found, name) == value, name
 
 
 def test_every_property_has_a_description(scene):
@@ -51,12 +42,8 @@ def test_every_property_has_a_description(scene):
 
 
 def test_values_are_exported(scene):
-    scene.rppm.samples = 7
-    scene.rppm.photons = 1234
-    scene.rppm.alpha = 0.5
-    scene.rppm.direct_light = "PHOTONS"
-    scene.rppm.cubemap_resolution = 64
-    scene.rppm.seed = 5
+    scene.rppm.samples, scene.rppm.photons, scene.rppm.alpha, scene.rppm.seed = 7, 1234, 0.5, 5
+    scene.rppm.direct_light, scene.rppm.cubemap_resolution = "PHOTONS", 64
     scene.render.film_transparent = True
     scene.rppm.film_exposure = 2.5
     scene.rppm.pixel_filter_type = "GAUSSIAN"
@@ -129,12 +116,14 @@ def test_what_scripts_and_presets_set_is_exported(scene):
             infos = settings_of(RenderSettings).items()
             (name,) = (name for name, info in infos if info.property_of(name) == item.identifier)
             assert getattr(found, name) == getattr(wanted, name), item.identifier
-    scene.rppm.direct_light = "PHOTONS"
-    assert export(scene).settings.direct_light is DirectLight.PHOTONS
-    scene.rppm.density_estimation = "RASTERIZED"
-    assert export(scene).settings.density_estimation is DensityEstimation.RASTERIZED
-    scene.rppm.first_photon_hits = "TRACED"
-    assert export(scene).settings.first_photon_hits is FirstPhotonHits.TRACED
+    kinds = {
+        "direct_light": DirectLight.PHOTONS,
+        "density_estimation": DensityEstimation.RASTERIZED,
+        "first_photon_hits": FirstPhotonHits.TRACED,
+    }
+    for name, value in kinds.items():
+        setattr(scene.rppm, name, value.name)
+        assert getattr(export(scene).settings, name) is value
     scene.rppm.cubemap_center_object = light
     assert export(scene).cubemap_center == pytest.approx([0.0, 0.0, 3.0])
     light.data.rppm.photon_weight = 3.0
@@ -156,11 +145,8 @@ def test_the_ranges_of_the_properties_are_valid_settings(scene):
 
 def test_the_cubemap_center_follows_its_object(scene):
     assert export(scene).cubemap_center is None
-    parent, empty = bpy.data.objects.new("parent", None), bpy.data.objects.new("empty", None)
-    for thing in (parent, empty):
-        scene.collection.objects.link(thing)
-    empty.parent = parent
-    parent.location, empty.location = (1, 2, 3), (0.5, 0, 0)
+    parent = add_object(scene, "parent", None, location=(1, 2, 3))
+    empty = add_object(scene, "empty", None, location=(0.5, 0, 0), parent=parent)
     scene.rppm.cubemap_center_object = empty
     bpy.context.view_layer.update()
     assert export(scene).cubemap_center == pytest.approx([1.5, 2, 3])

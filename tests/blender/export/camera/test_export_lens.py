@@ -90,9 +90,8 @@ def test_panoramas_that_cannot_be_rendered_name_the_remedy(scene):
 
 
 def test_aperture(scene):
-    camera = scene.camera.data
+    camera, lens = scene.camera.data, scene.camera.data.dof
     camera.lens = 80.0
-    lens = camera.dof
     lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 3.5, 2.0
     lens.aperture_blades, lens.aperture_rotation, lens.aperture_ratio = 6, 0.3, 1.5
     exported = export(scene)
@@ -112,11 +111,8 @@ def test_focus_on_an_object_is_along_the_view_axis(scene):
     """The camera stands at (0, 0, 5) and looks down."""
     lens = scene.camera.data.dof
     lens.use_dof, lens.focus_distance = True, 100.0
-    target = add_object(scene, "Target", None)
-    target.location = (3.0, 4.0, 1.0)
-    parent = add_object(scene, "Parent", None)
-    parent.location = (0.0, 0.0, 0.5)
-    target.parent = parent
+    parent = add_object(scene, "Parent", None, location=(0.0, 0.0, 0.5))
+    target = add_object(scene, "Target", None, location=(3.0, 4.0, 1.0), parent=parent)
     lens.focus_object = target
     assert export(scene).camera.aperture.focus_distance == pytest.approx(3.5)
     scene.camera.scale = (2.0, 2.0, 2.0)

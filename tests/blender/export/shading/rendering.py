@@ -12,8 +12,8 @@ def stage(scene, material, size=16):
     scene.render.resolution_x = scene.render.resolution_y = size
     scene.camera.data.type, scene.camera.data.ortho_scale = "ORTHO", 2.0
     shown = add_mesh(scene, "Shown")
-    shown.data.uv_layers.new(name="UVMap")
     shown.data.materials.append(material)
+    shown.data.uv_layers.new(name="UVMap")
     add_mesh(scene, "Wall", [(-1, -1, 0), (-1, 1, 0), (-1, 1, 2), (-1, -1, 2)], [(0, 1, 2, 3)])
     add_light(scene, "SUN", "Sun", energy=1.0)
     add_light(scene, "POINT", "Light", energy=10.0)
@@ -32,3 +32,9 @@ def picture(renderer, scene) -> tuple[np.ndarray, list[str], Scene]:
     for warning in result.statistics.warnings:
         assert "cannot be read" not in warning and "driver does not compile" not in warning, warning
     return combined[..., :3], result.statistics.warnings, exported
+
+
+def staged(renderer, scene, material) -> tuple[np.ndarray, list[str], Scene]:
+    """The picture of a material on the stage."""
+    stage(scene, material)
+    return picture(renderer, scene)

@@ -2,9 +2,8 @@
 """Thin Wall of the Principled BSDF, a socket of Blender 5.2: a boolean socket of another node stands in where it is
 missing."""
 
-import bpy
 import pytest
-from blender_scenes import add_node, link, new_material
+from blender_scenes import add_node, constant, link, node_group
 
 from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext
@@ -29,10 +28,8 @@ def principled(tree):
     node = add_node(tree, "ShaderNodeBsdfPrincipled")
     if "Thin Wall" in node.inputs:
         return node, node.inputs["Thin Wall"]
-    group = bpy.data.node_groups.new("Group", "ShaderNodeTree")
-    group.interface.new_socket("Wall", in_out="INPUT", socket_type="NodeSocketBool")
-    other = add_node(tree, "ShaderNodeGroup")
-    other.node_tree = group
+    group, _, _ = node_group([("Wall", "Bool")])
+    other = add_node(tree, "ShaderNodeGroup", node_tree=group)
     wall = Disguised(other.inputs[0], identifier="Thin Wall")
     return Disguised(node, inputs=[*node.inputs, wall]), wall
 
@@ -44,8 +41,8 @@ def exported(node):
 
 
 @pytest.mark.parametrize("checked", [False, True])
-def test_a_checked_box_is_an_option(scene, checked):
-    node, wall = principled(new_material().node_tree)
+def test_a_checked_box_is_an_option(scene, tree, checked):
+    node, wall = principled(tree)
     wall.default_value = checked
     node.inputs[0].default_value = (0.5, 0.25, 0.125, 1.0)
     graph = exported(node)
@@ -54,8 +51,7 @@ def test_a_checked_box_is_an_option(scene, checked):
     assert "thin_wall" not in shader.inputs
 
 
-def test_no_box_is_no_thin_wall(scene):
-    tree = new_material().node_tree
+def test_no_box_is_no_thin_wall(scene, tree):
     node = add_node(tree, "ShaderNodeBsdfPrincipled")
     visible = Disguised(node, inputs=[socket for socket in node.inputs if socket.identifier != "Thin Wall"])
     (shader,) = exported(visible).nodes
@@ -63,18 +59,14 @@ def test_no_box_is_no_thin_wall(scene):
 
 
 @pytest.mark.parametrize("number", [-1.0, 0.0, 0.5])
-def test_a_linked_number_is_an_option(scene, number):
-    tree = new_material().node_tree
+def test_a_linked_number_is_an_option(scene, tree, number):
     node, wall = principled(tree)
-    value = add_node(tree, "ShaderNodeValue")
-    value.outputs[0].default_value = number
-    link(tree, value.outputs[0], getattr(wall, "_real", wall))
+    link(tree, constant(tree, number), getattr(wall, "_real", wall))
     (shader,) = exported(node).nodes
     assert shader.options["thin_wall"] is (number > 0.0)
 
 
-def test_what_varies_chooses_one_of_two_surfaces(scene):
-    tree = new_material().node_tree
+def test_what_varies_chooses_one_of_two_surfaces(scene, tree):
     node, wall = principled(tree)
     link(tree, add_node(tree, "ShaderNodeTexNoise").outputs[0], getattr(wall, "_real", wall))
     graph = exported(node)

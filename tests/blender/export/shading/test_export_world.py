@@ -4,11 +4,10 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_node, export, link, set_world
+from blender_scenes import add_node, export, link, new_image, set_world
+from cycles_light import cycles_radiance
 from emission import HEIGHT, look_up, world_map
 from mathutils import Euler, Vector
-from test_export_images import new_image
-from test_export_lights import cycles_radiance
 
 
 def test_no_world_is_black(scene):
@@ -37,8 +36,7 @@ def test_world_without_nodes(scene):
 def environment(scene, pixels, strength=1.0):
     world = set_world(scene, strength=strength)
     tree = world.node_tree
-    texture = add_node(tree, "ShaderNodeTexEnvironment", "Sky")
-    texture.image = new_image("Environment", pixels, is_float=True)
+    texture = add_node(tree, "ShaderNodeTexEnvironment", "Sky", image=new_image("Environment", pixels, is_float=True))
     link(tree, texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
     return tree, texture
 
@@ -49,9 +47,8 @@ def test_environment_looks_as_in_cycles(scene, tmp_path, vector_type):
     pixels[..., 3] = 1.0
     tree, texture = environment(scene, pixels, 2.0)
     if vector_type is not None:
-        mapping = add_node(tree, "ShaderNodeMapping", Rotation=(0.3, -0.5, 1.1))
-        mapping.vector_type = vector_type
-        link(tree, add_node(tree, "ShaderNodeTexCoord").outputs["Generated"], mapping.inputs["Vector"])
+        place = add_node(tree, "ShaderNodeTexCoord").outputs["Generated"]
+        mapping = add_node(tree, "ShaderNodeMapping", vector_type=vector_type, Rotation=(0.3, -0.5, 1.1), Vector=place)
         link(tree, mapping.outputs[0], texture.inputs["Vector"])
     texture.interpolation = "Closest"
     exported = export(scene)
@@ -67,8 +64,7 @@ def test_environment_looks_as_in_cycles(scene, tmp_path, vector_type):
 
 def test_nodes_between_the_image_and_the_background(scene):
     tree, texture = environment(scene, np.full((2, 4, 4), 0.5), 2.0)
-    gamma = add_node(tree, "ShaderNodeGamma", Gamma=2.0)
-    link(tree, texture.outputs["Color"], gamma.inputs["Color"])
+    gamma = add_node(tree, "ShaderNodeGamma", Gamma=2.0, Color=texture.outputs["Color"])
     link(tree, gamma.outputs[0], tree.nodes["Background"].inputs["Color"])
     exported = export(scene)
     assert exported.warnings == []

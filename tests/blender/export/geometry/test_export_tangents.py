@@ -8,36 +8,29 @@ from rppm_addon.blender.export.geometry.meshes.tangents import corner_tangents, 
 from rppm_addon.scene import Mesh
 
 
-def square(uv_scale=(1.0, 1.0)) -> tuple[Mesh, np.ndarray]:
-    """Two triangles in XY facing +Z, u along X and v along Y, times the scale."""
-    positions = np.float32([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+def facing_up(name: str, positions, triangles) -> Mesh:
+    """A mesh whose corners are its vertices, with normals along Z."""
+    positions, triangles = np.float32(positions), np.int32(triangles)
     normals = np.tile(np.float32([0, 0, 1]), (4, 1))
-    triangles = np.int32([(0, 1, 2), (0, 2, 3)])
-    mesh = Mesh("Square", positions, np.arange(4, dtype=np.int32), normals, triangles, np.zeros(2, np.int32))
-    return mesh, positions[:, :2] * np.float32(uv_scale)
+    slots = np.zeros(len(triangles), np.int32)
+    return Mesh(name, positions, np.arange(4, dtype=np.int32), normals, triangles, slots)
 
 
-def test_tangents_run_along_u():
-    mesh, uv = square()
-    assert corner_tangents(mesh, uv) == pytest.approx(np.tile([1.0, 0.0, 0.0, 1.0], (4, 1)))
-
-
-def test_a_mirrored_map_turns_the_bitangent():
-    mesh, uv = square((1.0, -2.0))
-    assert corner_tangents(mesh, uv) == pytest.approx(np.tile([1.0, 0.0, 0.0, -1.0], (4, 1)))
-
-
-def test_a_map_without_area_has_no_tangents():
-    mesh, uv = square((1.0, 0.0))
-    assert not corner_tangents(mesh, uv)[:, :3].any()
+@pytest.mark.parametrize(
+    ("uv_scale", "tangent"),
+    [((1.0, 1.0), (1.0, 0.0, 0.0, 1.0)), ((1.0, -2.0), (1.0, 0.0, 0.0, -1.0)), ((1.0, 0.0), (0.0, 0.0, 0.0))],
+    ids=["along u", "mirrored", "without area"],
+)
+def test_tangents_run_along_u(uv_scale, tangent):
+    """A mirrored map turns the bitangent, a map without area has none. u is along X and v along Y, times the scale."""
+    mesh = facing_up("Square", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2), (0, 2, 3)])
+    found = corner_tangents(mesh, mesh.positions[:, :2] * np.float32(uv_scale))
+    assert found[:, : len(tangent)] == pytest.approx(np.tile(tangent, (4, 1)))
 
 
 def test_corners_share_a_mean_weighted_by_angles():
     """Where normal, place and UV are the same, the triangles' own tangents are mixed by their angles there."""
-    positions = np.float32([(0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 1, 0)])
-    normals = np.tile(np.float32([0, 0, 1]), (4, 1))
-    triangles = np.int32([(0, 1, 2), (0, 2, 3)])
-    mesh = Mesh("Fan", positions, np.arange(4, dtype=np.int32), normals, triangles, np.zeros(2, np.int32))
+    mesh = facing_up("Fan", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 1, 0)], [(0, 1, 2), (0, 2, 3)])
     # The first triangle, of 90 degrees at the origin, has u along X; the second, of 45, has it turned.
     uv = np.float32([(0, 0), (1, 0), (0, 1), (-2, 3)])
     first = np.array([1.0, 0.0, 0.0])

@@ -4,10 +4,22 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, add_object, export, link, new_material, to_surface
+from blender_scenes import (
+    CAMERA,
+    add_light,
+    add_mesh,
+    add_node,
+    collect,
+    export,
+    following,
+    link,
+    new_material,
+    node_group,
+    show_collection,
+    surface,
+)
 
 from rppm_addon.blender.export import SceneSync
-from rppm_addon.scene import Camera
 
 pytestmark = pytest.mark.skipif(not hasattr(bpy.types.Object, "evaluated_geometry"), reason="Blender tells since 4.5")
 
@@ -17,61 +29,51 @@ ASKED = f"INSTANCER:{NAME}"
 
 @pytest.fixture
 def nodes(scene):
-    """A tree of geometry nodes on a host; ``add`` puts a node into it."""
-    host = add_mesh(scene, "Host")
-    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
-    for way in ("INPUT", "OUTPUT"):
-        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    host.modifiers.new("Scatter", "NODES").node_group = tree
+    """A tree of geometry nodes on a host."""
+    tree, _, _ = node_group(outputs=[("Geometry", "Geometry")], tree_type="GeometryNodeTree")
+    add_mesh(scene, "Host").modifiers.new("Scatter", "NODES").node_group = tree
     return tree
 
 
 def asking_cube(nodes, side=0.1):
     """Its material reads the attribute."""
     material = new_material("Asking")
-    attribute = add_node(material.node_tree, "ShaderNodeAttribute")
-    attribute.attribute_type, attribute.attribute_name = "INSTANCER", NAME
-    shader = add_node(material.node_tree, "ShaderNodeEmission")
-    link(material.node_tree, attribute.outputs["Color"], shader.inputs["Color"])
-    to_surface(material, shader)
+    asked = add_node(material.node_tree, "ShaderNodeAttribute", attribute_type="INSTANCER", attribute_name=NAME)
+    surface("ShaderNodeEmission", material=material, Color=asked.outputs["Color"])
     cube = add_node(nodes, "GeometryNodeMeshCube", Size=(side, side, side))
-    painted = add_node(nodes, "GeometryNodeSetMaterial", Material=material)
-    link(nodes, cube.outputs["Mesh"], painted.inputs["Geometry"])
+    painted = add_node(nodes, "GeometryNodeSetMaterial", Material=material, Geometry=cube.outputs["Mesh"])
     return painted.outputs["Geometry"]
 
 
 def line(nodes, count, offset):
-    made = add_node(nodes, "GeometryNodeMeshLine", Count=count, Offset=offset)
-    return made.outputs["Mesh"]
+    return add_node(nodes, "GeometryNodeMeshLine", Count=count, Offset=offset).outputs["Mesh"]
 
 
 def with_numbers(nodes, points):
     """Points with identifiers of their own, as Distribute Points on Faces gives them."""
-    made = add_node(nodes, "GeometryNodeSetID")
-    index = add_node(nodes, "GeometryNodeInputIndex")
     odd = nodes.nodes.new("FunctionNodeIntegerMath")
     odd.operation, odd.inputs[1].default_value = "MULTIPLY", -1009
-    link(nodes, index.outputs[0], odd.inputs[0])
-    link(nodes, odd.outputs[0], made.inputs["ID"])
-    link(nodes, points, made.inputs["Geometry"])
+    link(nodes, add_node(nodes, "GeometryNodeInputIndex").outputs[0], odd.inputs[0])
+    made = add_node(nodes, "GeometryNodeSetID", ID=odd.outputs[0], Geometry=points)
     return made.outputs["Geometry"]
 
 
 def multiplied(nodes, points, geometry, name=NAME, shift=0.0):
     """Instances on points; the attribute holds where they are, and ``shift`` beside it."""
-    placed = add_node(nodes, "GeometryNodeInstanceOnPoints")
-    link(nodes, points, placed.inputs["Points"])
-    link(nodes, geometry, placed.inputs["Instance"])
-    stored = nodes.nodes.new("GeometryNodeStoreNamedAttribute")
-    stored.data_type, stored.domain = "FLOAT_VECTOR", "INSTANCE"
-    stored.inputs["Name"].default_value = name
-    position = add_node(nodes, "GeometryNodeInputPosition")
+    placed = add_node(nodes, "GeometryNodeInstanceOnPoints", Points=points, Instance=geometry)
+    stored = add_node(
+        nodes,
+        "GeometryNodeStoreNamedAttribute",
+        data_type="FLOAT_VECTOR",
+        domain="INSTANCE",
+        Name=name,
+        Geometry=placed.outputs["Instances"],
+    )
     moved = nodes.nodes.new("ShaderNodeVectorMath")
     moved.inputs[1].default_value = (shift, 0.0, 0.0)
-    link(nodes, position.outputs[0], moved.inputs[0])
+    link(nodes, add_node(nodes, "GeometryNodeInputPosition").outputs[0], moved.inputs[0])
     value = next(socket for socket in stored.inputs if socket.name == "Value" and socket.enabled)
     link(nodes, moved.outputs[0], value)
-    link(nodes, placed.outputs["Instances"], stored.inputs["Geometry"])
     return stored.outputs["Geometry"]
 
 
@@ -82,9 +84,13 @@ def joined(nodes, *parts):
     return made.outputs[0]
 
 
+def show(nodes, geometry):
+    link(nodes, geometry, nodes.nodes["Group Output"].inputs[0])
+
+
 def instances_of(scene, nodes, geometry):
     """(n, 3) places and (n, 4) values of what is exported."""
-    link(nodes, geometry, add_node(nodes, "NodeGroupOutput").inputs[0])
+    show(nodes, geometry)
     exported = export(scene)
     assert exported.warnings == []
     return _placed(exported)
@@ -134,13 +140,8 @@ def test_the_innermost_level_that_has_it_counts(scene, nodes, named):
 
 def test_in_a_collection_that_an_empty_shows(scene, nodes):
     """As linked libraries have it."""
-    collection = bpy.data.collections.new("Plants")
-    host = bpy.data.objects["Host"]
-    scene.collection.objects.unlink(host)
-    for member in (bpy.data.objects.new("A light", bpy.data.lights.new("A light", "POINT")), host):
-        collection.objects.link(member)
-    empty = add_object(scene, "Empty", None, location=(0.0, 50.0, 0.0))
-    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    collection = collect(scene, add_light(scene, "POINT"), bpy.data.objects["Host"])
+    show_collection(scene, collection, location=(0.0, 50.0, 0.0))
     points = line(nodes, 5, (0.3, 0.1, 0.2))
     places, values = instances_of(scene, nodes, multiplied(nodes, points, asking_cube(nodes)))
     assert len(places) == 5
@@ -148,20 +149,12 @@ def test_in_a_collection_that_an_empty_shows(scene, nodes):
 
 
 def test_a_viewport_follows_edits(scene, nodes):
-    geometry = multiplied(nodes, line(nodes, 3, (1.0, 0.0, 0.0)), asking_cube(nodes))
-    link(nodes, geometry, add_node(nodes, "NodeGroupOutput").inputs[0])
-    sync, camera = SceneSync(), Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8)
-
-    def follow(_, depsgraph):
-        sync.update(depsgraph, camera)
-
-    bpy.app.handlers.depsgraph_update_post.append(follow)
-    try:
+    show(nodes, multiplied(nodes, line(nodes, 3, (1.0, 0.0, 0.0)), asking_cube(nodes)))
+    sync = SceneSync()
+    shifted = next(node for node in nodes.nodes if node.bl_idname == "ShaderNodeVectorMath")
+    with following(lambda graph: sync.update(graph, CAMERA)):
         for shift in (0.0, 7.0):
-            shifted = next(node for node in nodes.nodes if node.bl_idname == "ShaderNodeVectorMath")
             shifted.inputs[1].default_value[0] = shift
             bpy.context.view_layer.update()
             places, values = _placed(sync.scene)
             np.testing.assert_allclose(values[:, 0], places[:, 0] + shift, atol=1e-6)
-    finally:
-        bpy.app.handlers.depsgraph_update_post.remove(follow)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Culling of Simplify."""
 
-import bpy
 import pytest
-from blender_scenes import add_mesh, export, multiply_cubes
+from blender_scenes import add_mesh, depsgraph, export, multiply_cubes
 
 from rppm_addon.blender.export.updates.sync import SceneSync
 
@@ -22,8 +21,7 @@ def things(scene):
     """Meshes about a camera that looks down, which ask to be culled."""
     scene.camera.matrix_world.identity()
     for name, place in PLACES.items():
-        made = add_mesh(scene)
-        made.name, made.location = name, place
+        made = add_mesh(scene, name, location=place)
         set_of_cycles(made, use_camera_cull=True, use_distance_cull=True)
     scene.render.use_simplify = True
     scene.view_layers[0].update()
@@ -74,8 +72,7 @@ def test_kept_scenes_follow_the_camera(things):
 
     def names():
         camera = export(things).camera
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        return [{made.object_name for made in sync.update(depsgraph, camera).instances} for sync in syncs]
+        return [{made.object_name for made in sync.update(depsgraph(), camera).instances} for sync in syncs]
 
     assert names() == [{"seen", "far"}, set(PLACES)]
     things.camera.location.z = 40.0

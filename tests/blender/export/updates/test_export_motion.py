@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, add_object, new_material, set_world, to_surface
+from blender_scenes import add_light, add_mesh, add_object, collect, depsgraph, set_world, surface
 from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export import SceneSync, export_scene
@@ -12,11 +12,21 @@ from rppm_addon.blender.export.updates.motion import step_times
 
 
 @pytest.fixture
-def quad(scene):
-    """A quad that moves along X, a meter in each frame up to FRAME and two in each one after it."""
+def scene(scene):
+    """The scene with a black world."""
     set_world(scene)
+    return scene
+
+
+WAY = (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0)
+"""Places along X, a meter further in the frame FRAME and two in the one after it."""
+
+
+@pytest.fixture
+def quad(scene):
+    """A quad that moves along WAY."""
     made = add_mesh(scene, "Quad")
-    animate(made, "location", (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+    animate(made, "location", *WAY)
     blur()
     return made
 
@@ -91,7 +101,6 @@ def test_nothing_is_noted_where_nothing_is_blurred(quad):
 
 
 def test_what_does_not_move_costs_nothing(scene):
-    set_world(scene)
     add_mesh(scene, "Quad")
     add_mesh(scene, "Flat", scale=(1.0, 0.0, 1.0))
     add_light(scene, "AREA")
@@ -100,10 +109,8 @@ def test_what_does_not_move_costs_nothing(scene):
 
 
 def test_only_final_renders_are_blurred(quad):
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    assert export_scene(depsgraph).shutter is None
-    camera = taken_scene().camera
-    assert SceneSync().update(depsgraph, camera).shutter is None
+    assert export_scene(depsgraph()).shutter is None
+    assert SceneSync().update(depsgraph(), taken_scene().camera).shutter is None
 
 
 def bent(owner, middle=0.5):
@@ -114,7 +121,6 @@ def bent(owner, middle=0.5):
 
 
 def test_shapes_have_keys(scene):
-    set_world(scene)
     quad, other = add_mesh(scene, "Quad"), add_mesh(scene, "Still")
     quad.data.shade_smooth()
     bent(quad)
@@ -135,7 +141,6 @@ def test_shapes_have_keys(scene):
 
 
 def test_a_shape_that_rests_at_first_rests(scene):
-    set_world(scene)
     quad = add_mesh(scene, "Quad")
     bent(quad, 0.0)
     quad.cycles.motion_steps = 2
@@ -144,15 +149,18 @@ def test_a_shape_that_rests_at_first_rests(scene):
     np.testing.assert_allclose(deformation.positions[:, 0, 2], [0.0, 0.0, 0.0, 0.25, 0.5], atol=1e-6)
 
 
-def test_shapes_with_other_faces_do_not_deform(scene):
-    set_world(scene)
-    quad = add_mesh(scene, "Quad")
+def multiply_in_the_next_frame(quad):
+    """Its faces are twice as many from the frame after FRAME on."""
     modifier = quad.modifiers.new("Array", "ARRAY")
     modifier.use_relative_offset, modifier.use_constant_offset = False, True
-    modifier.count = 1
-    modifier.keyframe_insert("count", frame=FRAME)
-    modifier.count = 2
-    modifier.keyframe_insert("count", frame=FRAME + 1)
+    for frame, count in ((FRAME, 1), (FRAME + 1, 2)):
+        modifier.count = count
+        modifier.keyframe_insert("count", frame=frame)
+
+
+def test_shapes_with_other_faces_do_not_deform(scene):
+    quad = add_mesh(scene, "Quad")
+    multiply_in_the_next_frame(quad)
     for curve in quad.animation_data.action.layers[0].strips[0].channelbags[0].fcurves:
         for point in curve.keyframe_points:
             point.interpolation = "CONSTANT"
@@ -164,16 +172,11 @@ def test_shapes_with_other_faces_do_not_deform(scene):
 
 def test_velocities_tell_how_vertices_go(scene):
     """Also of a mesh with other faces in each frame."""
-    set_world(scene)
     quad = add_mesh(scene, "Quad")
     velocities = quad.data.attributes.new("velocity", "FLOAT_VECTOR", "POINT").data
     velocities[2].vector = (0.0, 0.0, 24.0)
     velocities[3].vector = (float("nan"), 0.0, 0.0)
-    modifier = quad.modifiers.new("Array", "ARRAY")
-    modifier.count = 1
-    modifier.keyframe_insert("count", frame=FRAME)
-    modifier.count = 2
-    modifier.keyframe_insert("count", frame=FRAME + 1)
+    multiply_in_the_next_frame(quad)
     blur(2.0)
     taken = taken_scene()
     (deformation,) = taken.shutter.meshes
@@ -187,10 +190,9 @@ def test_velocities_tell_how_vertices_go(scene):
 
 def test_what_is_not_there_at_times(scene):
     """It stays in its place where it comes or goes, and is not seen if it is not there in the middle."""
-    set_world(scene)
     goes, comes = add_mesh(scene, "Goes"), add_mesh(scene, "Comes")
     for made, hidden in ((goes, (False, False, True)), (comes, (True, True, False))):
-        animate(made, "location", (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+        animate(made, "location", *WAY)
         for frame, value in enumerate(hidden, FRAME - 1):
             made.hide_render = value
             made.keyframe_insert("hide_render", frame=frame)
@@ -201,16 +203,12 @@ def test_what_is_not_there_at_times(scene):
 
 
 def test_instances_move_by_themselves_and_with_what_multiplies_them(scene):
-    set_world(scene)
-    collection = bpy.data.collections.new("Parts")
-    for name in ("First", "Second"):
-        part = add_mesh(scene, name)
-        scene.collection.objects.unlink(part)
-        collection.objects.link(part)
+    first, part = add_mesh(scene, "First"), add_mesh(scene, "Second")
+    collection = collect(scene, first, part)
     animate(part, "location", (0.0, -1.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
     empty = add_object(scene, "Empty", None, instance_type="COLLECTION", instance_collection=collection)
     add_object(scene, "Still", None, instance_type="COLLECTION", instance_collection=collection)
-    animate(empty, "location", (-1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+    animate(empty, "location", *WAY)
     blur()
     taken = taken_scene()
     ways = {}
@@ -224,7 +222,6 @@ def test_instances_move_by_themselves_and_with_what_multiplies_them(scene):
 
 
 def test_particles_that_are_born_or_die_are_not_seen(scene):
-    set_world(scene)
     shown = add_mesh(scene, "Shown")
     emitter = add_mesh(scene, "Emitter")
     emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
@@ -248,7 +245,6 @@ def test_particles_that_are_born_or_die_are_not_seen(scene):
 
 
 def test_lights_and_cameras_move(scene):
-    set_world(scene)
     add_mesh(scene)
     light = add_light(scene, "POINT")
     animate(light, "location", (-1.0, 0.0, 3.0), (0.0, 0.0, 3.0), (2.0, 0.0, 3.0))
@@ -281,9 +277,7 @@ def test_the_camera_is_that_of_the_frame(quad, position):
 
 
 def test_materials_are_those_of_the_frame(quad):
-    material = new_material()
-    shader = add_node(material.node_tree, "ShaderNodeBsdfDiffuse")
-    to_surface(material, shader)
+    material, shader = surface("ShaderNodeBsdfDiffuse")
     quad.data.materials.append(material)
     animate(shader.inputs["Color"], "default_value", (1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0))
     blur(1.0, "END")
@@ -293,7 +287,6 @@ def test_materials_are_those_of_the_frame(quad):
 
 
 def test_what_grows_from_nothing(scene):
-    set_world(scene)
     quad = add_mesh(scene, "Quad")
     animate(quad, "scale", (0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
     blur(2.0)

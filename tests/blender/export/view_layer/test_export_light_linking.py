@@ -3,7 +3,7 @@
 
 import bpy
 import pytest
-from blender_scenes import add_light, add_mesh, export
+from blender_scenes import add_light, add_mesh, depsgraph, export, show_collection
 
 from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.scene import ALL_SETS, UNLIMITED_BOUNCES, LightLinking, RayVisibility
@@ -81,11 +81,9 @@ def test_emissive_meshes_and_what_is_multiplied(scene, lit):
     """Instances are linked as what multiplies them."""
     meshes, _ = lit
     meshes[0].light_linking.receiver_collection = collection(meshes[2])
-    parent = bpy.data.objects.new("parent", None)
-    parent.instance_type, parent.instance_collection = "COLLECTION", bpy.data.collections.new("multiplied")
-    parent.instance_collection.objects.link(meshes[1])
-    scene.collection.objects.link(parent)
-    meshes[2].light_linking.blocker_collection = collection(parent)
+    multiplied = bpy.data.collections.new("multiplied")
+    multiplied.objects.link(meshes[1])
+    meshes[2].light_linking.blocker_collection = collection(show_collection(scene, multiplied))
     exported = export(scene)
     assert exported.instances[0].linking.light_set_membership != ALL_SETS
     sets = [(instance.linking or LightLinking()).blocker_shadow_set for instance in exported.instances]
@@ -95,8 +93,7 @@ def test_emissive_meshes_and_what_is_multiplied(scene, lit):
 def test_more_sets_than_there_are(scene, lit):
     meshes, _ = lit
     for _ in range(65):
-        added = add_light(scene, "POINT")
-        added.light_linking.receiver_collection = collection(meshes[0])
+        add_light(scene, "POINT").light_linking.receiver_collection = collection(meshes[0])
     exported = export(scene)
     (text,) = exported.warnings
     assert text.startswith("Light Linking: more than 63")
@@ -105,12 +102,11 @@ def test_more_sets_than_there_are(scene, lit):
 
 def test_a_viewport_follows_the_collections(scene, lit):
     meshes, (light, _) = lit
-    sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    camera = export(scene).camera
+    sync, camera = SceneSync(), export(scene).camera
 
     def shown():
-        depsgraph.update()
-        return shining_on(sync.update(depsgraph, camera), 0)
+        scene.view_layers[0].update()
+        return shining_on(sync.update(depsgraph(), camera), 0)
 
     assert shown() == [0, 1, 2]
     light.light_linking.receiver_collection = linked = collection(meshes[1])

@@ -9,11 +9,13 @@ from blender_scenes import (
     add_mesh,
     add_node,
     add_object,
+    collect,
     export,
-    link,
     new_material,
+    node_group,
     shaders,
-    to_surface,
+    show_collection,
+    surface,
 )
 from mathutils import Matrix
 
@@ -22,19 +24,14 @@ from rppm_addon.scene import RayVisibility
 
 def test_nested_collection_instances_have_blenders_matrices(scene):
     quad = add_mesh(scene, "Quad", location=(1.0, 0.0, 0.0))
-    inner = bpy.data.collections.new("Inner")
-    inner.objects.link(quad)
-    scene.collection.objects.unlink(quad)
-    outer = bpy.data.collections.new("Outer")
-    for index in range(3):
-        empty = bpy.data.objects.new(f"Inner{index}", None)
-        empty.instance_type, empty.instance_collection = "COLLECTION", inner
-        empty.location = (0.0, index, 0.0)
-        empty.rotation_euler = (0.1 * index, 0.2, 0.3)
-        outer.objects.link(empty)
+    inner = collect(scene, quad)
+    empties = [
+        show_collection(scene, inner, location=(0.0, index, 0.0), rotation_euler=(0.1 * index, 0.2, 0.3))
+        for index in range(3)
+    ]
+    outer = collect(scene, *empties)
     for index in range(4):
-        empty = add_object(scene, f"Outer{index}", None, scale=(1.0 + index, 2.0, 1.0))
-        empty.instance_type, empty.instance_collection = "COLLECTION", outer
+        show_collection(scene, outer, f"Outer{index}", scale=(1.0 + index, 2.0, 1.0))
     exported = export(scene)
     assert len(exported.meshes) == 1 and len(exported.instances) == 12 and exported.triangle_count == 24
     expected = [
@@ -49,23 +46,15 @@ def test_nested_collection_instances_have_blenders_matrices(scene):
 
 
 def test_geometry_nodes_instances_and_materials(scene):
-    host = add_mesh(scene, "Host")
-    quad = add_mesh(scene, "Quad")
-    quad.hide_render = quad.hide_viewport = True
-    material = new_material("Scattered")
-    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
-    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    line = tree.nodes.new("GeometryNodeMeshLine")
-    line.inputs["Count"].default_value = 7
-    cube = tree.nodes.new("GeometryNodeMeshCube")
-    paint = tree.nodes.new("GeometryNodeSetMaterial")
-    paint.inputs["Material"].default_value = material
-    place = tree.nodes.new("GeometryNodeInstanceOnPoints")
-    output = tree.nodes.new("NodeGroupOutput")
-    tree.links.new(cube.outputs["Mesh"], paint.inputs["Geometry"])
-    tree.links.new(line.outputs["Mesh"], place.inputs["Points"])
-    tree.links.new(paint.outputs["Geometry"], place.inputs["Instance"])
-    tree.links.new(place.outputs["Instances"], output.inputs[0])
+    host, material = add_mesh(scene, "Host"), new_material("Scattered")
+    tree, _, last = node_group(outputs=[("Geometry", "Geometry")], tree_type="GeometryNodeTree")
+    cube = add_node(tree, "GeometryNodeMeshCube")
+    paint = add_node(tree, "GeometryNodeSetMaterial", Material=material, Geometry=cube.outputs["Mesh"])
+    line = add_node(tree, "GeometryNodeMeshLine", Count=7)
+    place = add_node(
+        tree, "GeometryNodeInstanceOnPoints", Points=line.outputs["Mesh"], Instance=paint.outputs["Geometry"]
+    )
+    tree.links.new(place.outputs["Instances"], last.inputs[0])
     host.modifiers.new("Scatter", "NODES").node_group = tree
     exported = export(scene)
     assert len(exported.instances) == 7 and len(exported.meshes) == 1
@@ -79,16 +68,11 @@ def test_geometry_nodes_instances_and_materials(scene):
 def test_hidden_things_stay_out(scene):
     add_mesh(scene, "Seen")
     add_mesh(scene, "Hidden").hide_viewport = True
-    excluded = bpy.data.collections.new("Excluded")
-    scene.collection.children.link(excluded)
-    out = add_mesh(scene, "Out")
-    excluded.objects.link(out)
-    scene.collection.objects.unlink(out)
+    scene.collection.children.link(collect(scene, add_mesh(scene, "Out"), name="Excluded"))
     scene.view_layers[0].layer_collection.children["Excluded"].exclude = True
-    unseen = add_mesh(scene, "Unseen")
+    unseen, partly = add_mesh(scene, "Unseen"), add_mesh(scene, "Partly")
     for name in _RAYS:
         setattr(unseen, f"visible_{name}", False)
-    partly = add_mesh(scene, "Partly")
     partly.visible_shadow = False
     exported = export(scene)
     assert sorted(instance.object_name for instance in exported.instances) == ["Partly", "Seen"]
@@ -99,7 +83,6 @@ def test_hidden_things_stay_out(scene):
 @pytest.mark.parametrize("kind", ["mesh", "hair"])
 def test_rays_that_see_what_multiplies(scene, kind):
     """An instance is seen by rays that see both its object and what shows the collection."""
-    collection = bpy.data.collections.new("Shown")
     if kind == "mesh":
         member = add_mesh(scene, "Member")
     else:
@@ -107,12 +90,10 @@ def test_rays_that_see_what_multiplies(scene, kind):
         curves.add_curves([2])
         curves.points[1].position = (0.0, 0.0, 1.0)
         member = add_object(scene, "Member", curves)
-    scene.collection.objects.unlink(member)
-    collection.objects.link(member)
+    collection = collect(scene, member)
     member.visible_glossy = False
-    for name, hidden in (("All", ()), ("Some", ("camera", "shadow")), ("None", _RAYS), ("Rest", ("diffuse",))):
-        empty = add_object(scene, name, None)
-        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    for hidden in ((), ("camera", "shadow"), _RAYS, ("diffuse",)):
+        empty = show_collection(scene, collection)
         for rays in hidden:
             setattr(empty, f"visible_{rays}", False)
     seen = RayVisibility.ALL ^ RayVisibility.GLOSSY
@@ -158,12 +139,8 @@ def test_light_groups_of_what_multiplies(scene, own, group):
 
 def _shown_in_a_collection(scene):
     """A mesh object, and the empty that shows it."""
-    collection, member = bpy.data.collections.new("Shown"), add_mesh(scene, "Member")
-    empty = add_object(scene, "Empty", None)
-    scene.collection.objects.unlink(member)
-    collection.objects.link(member)
-    empty.instance_type, empty.instance_collection = "COLLECTION", collection
-    return member, empty
+    member = add_mesh(scene, "Member")
+    return member, show_collection(scene, collect(scene, member))
 
 
 _RAYS = ("camera", "diffuse", "glossy", "transmission", "shadow")
@@ -174,18 +151,13 @@ def test_coordinates_from_the_instancer(scene, kind, output):
     """Each instance has one value: UV of the face's middle, and Generated, of which Blender has none for faces, less a
     half as in Cycles. What stands for itself has zero."""
     material = new_material()
-    node = add_node(material.node_tree, f"ShaderNode{kind}")
-    node.from_instancer = True
-    shader = add_node(material.node_tree, "ShaderNodeEmission")
-    link(material.node_tree, node.outputs[output], shader.inputs["Color"])
-    to_surface(material, shader)
+    node = add_node(material.node_tree, f"ShaderNode{kind}", from_instancer=True)
+    surface("ShaderNodeEmission", material=material, Color=node.outputs[output])
     points = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (6, 0, 0), (6, 2, 0)]
     faces = add_mesh(scene, "Faces", points, [(0, 1, 2, 3), (1, 4, 5, 2)])
     uv = faces.data.uv_layers.new(name="UVMap")
     uv.data.foreach_set("uv", [0.1, 0.2, 0.3, 0.2, 0.3, 0.8, 0.1, 0.8, 0.5, 0.0, 0.9, 0.0, 0.9, 0.4, 0.5, 0.4])
-    child, alone = add_mesh(scene, "Child"), add_mesh(scene, "Alone")
-    for one in (child, alone):
-        one.data.materials.append(material)
+    child, _ = add_mesh(scene, "Child", material=material), add_mesh(scene, "Alone", material=material)
     child.parent, faces.instance_type = faces, "FACES"
     exported = export(scene)
     assert exported.warnings == []
@@ -202,8 +174,7 @@ def test_coordinates_from_the_instancer(scene, kind, output):
 
 def test_object_slots_win_over_those_of_the_mesh(scene):
     on_mesh, on_object, second = (new_material(name) for name in ("OnMesh", "OnObject", "Second"))
-    first = add_mesh(scene, "First")
-    first.data.materials.append(on_mesh)
+    first = add_mesh(scene, "First", material=on_mesh)
     first.data.materials.append(second)
     other = add_object(scene, "Other", first.data)
     other.material_slots[0].link = "OBJECT"

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """View layers of a scene: overrides, samples, and collections that are masks."""
 
-import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_object, export, new_material, set_world
+from blender_scenes import add_light, add_mesh, collect, depsgraph, export, new_material, set_world, show_collection
 from emission import world_map
 
 from rppm_addon.blender.export import SceneSync
@@ -15,23 +14,20 @@ from rppm_addon.scene import RayVisibility
 @pytest.fixture
 def masked(scene):
     """A quad in a collection of its own, one beside it, and a third that an empty of the collection multiplies."""
-    collection = bpy.data.collections.new("Masks")
-    scene.collection.children.link(collection)
-    inside, _outside, multiplied = (add_mesh(scene, name) for name in ("Inside", "Outside", "Multiplied"))
-    scene.collection.objects.unlink(inside)
-    collection.objects.link(inside)
-    for quad in (inside, multiplied):
-        quad.data.materials.append(new_material(quad.name))
-    source = bpy.data.collections.new("Source")
-    scene.collection.objects.unlink(multiplied)
-    source.objects.link(multiplied)
-    for name, owner in (("Masked", collection), ("Free", scene.collection)):
-        empty = add_object(scene, name, None)
-        empty.instance_type, empty.instance_collection = "COLLECTION", source
-        if owner is collection:
-            scene.collection.objects.unlink(empty)
-            owner.objects.link(empty)
+    inside, multiplied = (add_mesh(scene, name, material=new_material(name)) for name in ("Inside", "Multiplied"))
+    add_mesh(scene, "Outside")
+    source = collect(scene, multiplied)
+    show_collection(scene, source, "Free")
+    masks = collect(scene, inside, show_collection(scene, source, "Masked"), name="Masks")
+    scene.collection.children.link(masks)
     return scene
+
+
+@pytest.fixture
+def followed(scene):
+    """The scene that lives on from frame to frame, brought up to date."""
+    sync = SceneSync(viewport=False)
+    return lambda: sync.update(depsgraph(), export_camera(scene, depsgraph()))
 
 
 def mask_of(scene):
@@ -84,14 +80,9 @@ def test_samples_of_a_layer(scene):
     assert export(scene).settings.iterations == 50
 
 
-def test_a_scene_that_lives_on_follows_its_layer(masked):
+def test_a_scene_that_lives_on_follows_its_layer(masked, followed):
     """States of objects that a viewport or persistent data keep are not taken for the current ones."""
-    sync, layer = SceneSync(viewport=False), masked.view_layers[0]
-
-    def followed():
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        return sync.update(depsgraph, export_camera(masked, depsgraph))
-
+    layer = masked.view_layers[0]
     assert masks(followed()) == FREE
     mask_of(masked).holdout = True
     assert [holdout for *_, holdout in masks(followed())] == [True, False, True, False]
@@ -103,22 +94,17 @@ def test_a_scene_that_lives_on_follows_its_layer(masked):
     assert len(followed().materials) > 1
 
 
-def test_filters_leave_out_the_environment_and_surfaces(scene):
+def test_filters_leave_out_the_environment_and_surfaces(scene, followed):
     """As in Cycles: no light comes from what is left out; lamps remain, and the mist's settings."""
     add_mesh(scene, "Quad")
     add_light(scene, "POINT")
     world = set_world(scene, (1.0, 1.0, 1.0))
     world.mist_settings.start = 3.0
-    layer, sync = scene.view_layers[0], SceneSync(viewport=False)
-
-    def follow():
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        return sync.update(depsgraph, export_camera(scene, depsgraph))
-
-    assert follow().world.graph is not None and len(follow().instances) == 1
+    layer = scene.view_layers[0]
+    assert followed().world.graph is not None and len(followed().instances) == 1
     layer.use_sky = layer.use_solid = False
-    for found in (follow(), export(scene)):
+    for found in (followed(), export(scene)):
         assert found.world.graph is None and not found.world.radiance.any() and found.world.mist.start == 3.0
         assert not found.instances and len(found.lights) == 1
     layer.use_solid = True
-    assert len(follow().instances) == 1
+    assert len(followed().instances) == 1

@@ -6,7 +6,7 @@ import math
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_object, export, set_world
+from blender_scenes import add_object, depsgraph, export, set_world
 from bpy_extras.object_utils import world_to_camera_view
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -26,12 +26,12 @@ def project(camera, point):
 
 def blender_projection(scene, camera_object, point):
     """The same by Blender's projection matrix for the frame's size in pixels."""
-    depsgraph = bpy.context.evaluated_depsgraph_get()
     render = scene.render
+    share = render.resolution_percentage / 100
     matrix = camera_object.calc_matrix_camera(
-        depsgraph,
-        x=max(1, int(render.resolution_x * render.resolution_percentage / 100)),
-        y=max(1, int(render.resolution_y * render.resolution_percentage / 100)),
+        depsgraph(),
+        x=max(1, int(render.resolution_x * share)),
+        y=max(1, int(render.resolution_y * share)),
         scale_x=render.pixel_aspect_x,
         scale_y=render.pixel_aspect_y,
     )
@@ -56,8 +56,7 @@ POINTS = [(0.3, -0.2, 0.0), (-1.0, 0.7, 1.0), (0.0, 0.0, -3.0), (2.0, 1.0, 2.0)]
     scale=st.tuples(*[st.floats(0.2, 5.0)] * 3),
 )
 def test_window_agrees_with_blender(scene, kind, fit, lens, sensor, shift, size, percentage, aspect, rotation, scale):
-    camera_object = scene.camera
-    data = camera_object.data
+    camera_object, data = scene.camera, scene.camera.data
     data.type, data.sensor_fit, data.lens = kind, fit, lens
     data.sensor_width, data.sensor_height = sensor
     data.ortho_scale = sensor[0] / 5.0
@@ -123,8 +122,7 @@ def test_mirrored_and_sheared_cameras_stay_so(scene):
     exported = export(scene)
     assert np.linalg.det(exported.camera.matrix) == pytest.approx(-1.0)
     assert not exported.camera.is_sheared
-    parent = add_object(scene, "Parent", None)
-    parent.scale = (1.0, 1.0, 2.0)
+    parent = add_object(scene, "Parent", None, scale=(1.0, 1.0, 2.0))
     scene.camera.scale, scene.camera.rotation_euler = (1.0, 1.0, 1.0), (0.8, 0.0, 0.0)
     scene.camera.parent = parent
     exported = export(scene)
