@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender as a module, with RPPM registered."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -47,13 +49,32 @@ def timers(monkeypatch):
     class Timers(list):
         def run_out(self):
             for function in self:
-                while function() is not None:
-                    pass
+                while (wait := function()) is not None:
+                    time.sleep(min(wait, 0.02))
             self.clear()
 
     waiting = Timers()
     monkeypatch.setattr(bpy.app.timers, "register", lambda function, **_: waiting.append(function))
     return waiting
+
+
+@pytest.fixture
+def process(scene, monkeypatch, tmp_path):
+    """The renderer process, in the state that a test sets: it counts how often it is started anew, and is not."""
+    from rppm_addon.blender.render_client import renderer_process
+    from rppm_addon.session.client.client import ProcessState
+
+    process = renderer_process.renderer_process()
+    process.close()
+
+    def restart(lists_devices=False):
+        process.restarted, process.state, process.error = process.restarted + 1, ProcessState.STARTING, ""
+
+    monkeypatch.setattr(process.launcher, "log_path", tmp_path / "renderer.log")
+    values = {"state": ProcessState.STOPPED, "error": "", "device": None, "is_listing": False, "restarted": 0}
+    for name, value in (values | {"restart": restart}).items():
+        monkeypatch.setattr(process, name, value, raising=False)
+    return process
 
 
 @pytest.fixture

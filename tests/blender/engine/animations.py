@@ -10,7 +10,22 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from blender_scenes import add_light, add_mesh, add_node, add_object, link, new_material, set_world, to_surface
+from blender_scenes import (
+    add_light,
+    add_mesh,
+    add_node,
+    add_object,
+    collect,
+    geometry_nodes,
+    link,
+    new_image,
+    new_material,
+    node_group,
+    save_png,
+    set_world,
+    show_collection,
+    surface,
+)
 
 FRAMES = range(1, 5)
 
@@ -18,11 +33,9 @@ FRAMES = range(1, 5)
 def stage(scene: bpy.types.Scene) -> None:
     """A floor, a wall, an area light and a camera that looks at them from the front."""
     set_world(scene, (0.05, 0.06, 0.08))
-    floor = add_mesh(scene, "Floor", [(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)])
-    wall = add_mesh(scene, "Wall", [(-3, 3, 0), (3, 3, 0), (3, 3, 4), (-3, 3, 4)])
     white = material("White", "ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.6, 1.0))
-    for thing in (floor, wall):
-        thing.data.materials.append(white)
+    add_mesh(scene, "Floor", [(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)], material=white)
+    add_mesh(scene, "Wall", [(-3, 3, 0), (3, 3, 0), (3, 3, 4), (-3, 3, 4)], material=white)
     light = add_light(scene, "AREA", "Light", energy=200.0, size=0.5)
     light.location, light.rotation_euler = (1.0, -1.0, 3.5), (0.2, 0.25, 0.0)
     scene.camera.location, scene.camera.rotation_euler = (0.0, -5.0, 2.2), (math.radians(74.0), 0.0, 0.0)
@@ -32,9 +45,7 @@ def stage(scene: bpy.types.Scene) -> None:
 
 def material(name: str, kind: str, **inputs: object) -> bpy.types.Material:
     """A material of one shader node, which is named Shader."""
-    made = new_material(name)
-    to_surface(made, add_node(made.node_tree, kind, "Shader", **inputs))
-    return made
+    return surface(kind, "Shader", new_material(name), **inputs)[0]
 
 
 def glass() -> bpy.types.Material:
@@ -91,31 +102,20 @@ def ball(scene: bpy.types.Scene, name: str, radius: float, around: int = 16, **v
 
 def wave(scene: bpy.types.Scene, folder: Path) -> None:
     """The surface of water, by the Wave modifier, and by geometry nodes that look at the time."""
-    water = grid(scene, "Water", 2.0, 16, location=(-1.0, 0.0, 0.6))
-    water.data.materials.append(glass())
+    water = grid(scene, "Water", 2.0, 16, location=(-1.0, 0.0, 0.6), material=glass())
     modifier = water.modifiers.new("Wave", "WAVE")
     modifier.height, modifier.width, modifier.speed, modifier.time_offset = 0.2, 0.9, 0.2, -20.0
-    other = grid(scene, "Lake", 1.0, 8, location=(1.8, 0.0, 0.4))
-    other.data.materials.append(bpy.data.materials["Glass"])
-    tree = bpy.data.node_groups.new("Lake", "GeometryNodeTree")
-    tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
-    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
-    move, noise, time = (
-        tree.nodes.new(kind) for kind in ("GeometryNodeSetPosition", "ShaderNodeTexNoise", "GeometryNodeInputSceneTime")
-    )
-    noise.noise_dimensions = "4D"
-    tree.links.new(time.outputs["Seconds"], noise.inputs["W"])
-    tree.links.new(start.outputs[0], move.inputs["Geometry"])
-    tree.links.new(noise.outputs["Color"], move.inputs["Offset"])
-    tree.links.new(move.outputs[0], end.inputs[0])
-    other.modifiers.new("Lake", "NODES").node_group = tree
+    lake = grid(scene, "Lake", 1.0, 8, location=(1.8, 0.0, 0.4), material=bpy.data.materials["Glass"])
+    (shift,) = geometry_nodes(lake, "GeometryNodeSetPosition")
+    time = add_node(shift.id_data, "GeometryNodeInputSceneTime")
+    noise = add_node(shift.id_data, "ShaderNodeTexNoise", noise_dimensions="4D", W=time.outputs["Seconds"])
+    link(shift.id_data, noise.outputs["Color"], shift.inputs["Offset"])
 
 
 def spotlight(scene: bpy.types.Scene, folder: Path) -> None:
     """A spot and the camera go round a mirror and a glass."""
-    ball(scene, "Mirror", 0.7, location=(-0.6, 0.4, 0.7)).data.materials.append(mirror())
-    ball(scene, "Glass", 0.5, location=(0.8, -0.4, 0.6)).data.materials.append(glass())
+    ball(scene, "Mirror", 0.7, location=(-0.6, 0.4, 0.7), material=mirror())
+    ball(scene, "Glass", 0.5, location=(0.8, -0.4, 0.6), material=glass())
     spot = add_light(scene, "SPOT", "Spot", energy=800.0, spot_size=0.9)
     keyed(spot, "location", *((x, -2.0, 3.0) for x in (-1.0, -0.5, 0.5, 1.0)))
     keyed(spot, "rotation_euler", *((0.6, y, 0.0) for y in (-0.3, -0.1, 0.1, 0.3)))
@@ -150,8 +150,7 @@ def _places_at(scene: bpy.types.Scene, bodies: list[bpy.types.Object], frame: in
 
 def armature(scene: bpy.types.Scene, folder: Path) -> None:
     """A stalk that bends with its bones."""
-    stalk = ball(scene, "Stalk", 0.5, location=(0.0, 0.0, 1.0), scale=(0.5, 0.5, 2.0))
-    stalk.data.materials.append(glass())
+    stalk = ball(scene, "Stalk", 0.5, location=(0.0, 0.0, 1.0), scale=(0.5, 0.5, 2.0), material=glass())
     skeleton = add_object(scene, "Skeleton", bpy.data.armatures.new("Skeleton"))
     bpy.context.view_layer.objects.active = skeleton
     bpy.ops.object.mode_set(mode="EDIT")
@@ -171,36 +170,23 @@ def armature(scene: bpy.types.Scene, folder: Path) -> None:
 
 def instances(scene: bpy.types.Scene, folder: Path) -> None:
     """Instances come and go: by geometry nodes, of a collection, and of a particle system."""
-    pebble = ball(scene, "Pebble", 0.25, 8, location=(10.0, 0.0, 0.0))
-    pebble.data.materials.append(glass())
-    tree = bpy.data.node_groups.new("Row", "GeometryNodeTree")
-    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
-    end = tree.nodes.new("NodeGroupOutput")
-    line, place, source, time, turn = (
-        tree.nodes.new(kind)
-        for kind in (
-            "GeometryNodeMeshLine", "GeometryNodeInstanceOnPoints", "GeometryNodeObjectInfo",
-            "GeometryNodeInputSceneTime", "ShaderNodeMath",
-        )
-    )  # fmt: skip
-    turn.operation, turn.inputs[1].default_value = "PINGPONG", 3.0  # 1, 2, 3, 2 of them
-    line.inputs["Start Location"].default_value, line.inputs["Offset"].default_value = (-2.0, 0, 0.3), (0.6, 0.2, 0.0)
-    source.inputs["Object"].default_value = pebble
-    tree.links.new(time.outputs["Frame"], turn.inputs[0])
-    tree.links.new(turn.outputs[0], line.inputs["Count"])
-    tree.links.new(line.outputs[0], place.inputs["Points"])
-    tree.links.new(source.outputs["Geometry"], place.inputs["Instance"])
-    tree.links.new(place.outputs[0], end.inputs[0])
+    pebble = ball(scene, "Pebble", 0.25, 8, location=(10.0, 0.0, 0.0), material=glass())
+    tree, _, last = node_group(outputs=[("Geometry", "Geometry")], tree_type="GeometryNodeTree")
+    frame = add_node(tree, "GeometryNodeInputSceneTime").outputs["Frame"]
+    turn = add_node(tree, "ShaderNodeMath", operation="PINGPONG", Value=frame)
+    turn.inputs[1].default_value = 3.0  # 1, 2, 3, 2 of them
+    line = add_node(tree, "GeometryNodeMeshLine", Count=turn.outputs[0], Offset=(0.6, 0.2, 0.0))
+    line.inputs["Start Location"].default_value = (-2.0, 0, 0.3)
+    source = add_node(tree, "GeometryNodeObjectInfo", Object=pebble).outputs["Geometry"]
+    place = add_node(tree, "GeometryNodeInstanceOnPoints", Points=line.outputs[0], Instance=source)
+    link(tree, place.outputs[0], last.inputs[0])
     add_mesh(scene, "Row").modifiers.new("Row", "NODES").node_group = tree
 
-    group = bpy.data.collections.new("Group")
-    group.objects.link(ball(scene, "Member", 0.3, 8, location=(0.0, 0.0, 0.0)))
-    scene.collection.objects.unlink(bpy.data.objects["Member"])
+    group = collect(scene, ball(scene, "Member", 0.3, 8, location=(0.0, 0.0, 0.0)))
     for k, shown in enumerate(((1, 0, 1, 0), (0, 0, 1, 1))):
-        empty = add_object(scene, f"Empty {k}", None, location=(0.8 * k, 1.0, 0.3))
-        empty.instance_type, empty.instance_collection = "COLLECTION", group
-        keyed(empty, "hide_render", *(not x for x in shown))
-        keyed(empty, "hide_viewport", *(not x for x in shown))
+        empty = show_collection(scene, group, location=(0.8 * k, 1.0, 0.3))
+        for name in ("hide_render", "hide_viewport"):
+            keyed(empty, name, *(not x for x in shown))
 
     emitter = grid(scene, "Emitter", 0.8, 2, location=(1.4, 0.0, 1.2))
     with bpy.context.temp_override(object=emitter, active_object=emitter):
@@ -229,8 +215,7 @@ def topology(scene: bpy.types.Scene, folder: Path) -> None:
     remesh.mode = "VOXEL"
     keyed(remesh, "voxel_size", 0.3, 0.25, 0.2, 0.15)
 
-    bitten = ball(scene, "Bitten", 0.6, location=(1.9, 0.0, 0.7))
-    bitten.data.materials.append(mirror())
+    bitten = ball(scene, "Bitten", 0.6, location=(1.9, 0.0, 0.7), material=mirror())
     tooth = ball(scene, "Tooth", 0.4, 8, hide_render=True)
     tooth.hide_viewport = True
     keyed(tooth, "location", *((1.9, -0.2, z) for z in (1.8, 1.4, 1.2, 1.0)))
@@ -240,39 +225,35 @@ def topology(scene: bpy.types.Scene, folder: Path) -> None:
 
 def materials(scene: bpy.types.Scene, folder: Path) -> None:
     """Colors, roughness, emission, light and world change, and a light goes out."""
-    painted = ball(scene, "Painted", 0.6, location=(-1.2, 0.0, 0.6))
     paint = material("Paint", "ShaderNodeBsdfPrincipled", Roughness=0.8)
-    painted.data.materials.append(paint)
+    ball(scene, "Painted", 0.6, location=(-1.2, 0.0, 0.6), material=paint)
     shader = paint.node_tree.nodes["Shader"]
     keyed(shader.inputs["Base Color"], "default_value", *((r, 0.3, 0.1, 1.0) for r in (0.1, 0.4, 0.7, 0.9)))
     keyed(shader.inputs["Roughness"], "default_value", 0.9, 0.55, 0.45, 0.0)  # deposits photons, then is traced
     keyed(shader.inputs["Metallic"], "default_value", 0.0, 0.0, 0.5, 1.0)
-    glowing = ball(scene, "Glowing", 0.3, 8, location=(0.3, -0.4, 0.5))
     glow = material("Glow", "ShaderNodeEmission")
-    glowing.data.materials.append(glow)
+    ball(scene, "Glowing", 0.3, 8, location=(0.3, -0.4, 0.5), material=glow)
     keyed(glow.node_tree.nodes["Shader"].inputs["Strength"], "default_value", 0.0, 5.0, 5.0, 0.0)
-    driven = ball(scene, "Driven", 0.4, 8, location=(1.4, 0.0, 0.4))
-    noisy = material("Noisy", "ShaderNodeBsdfDiffuse")
-    noise = add_node(noisy.node_tree, "ShaderNodeTexNoise", "Noise")
-    noise.noise_dimensions = "4D"
-    link(noisy.node_tree, noise.outputs["Color"], noisy.node_tree.nodes["Shader"].inputs["Color"])
+    noisy = new_material("Noisy")
+    noise = add_node(noisy.node_tree, "ShaderNodeTexNoise", "Noise", noise_dimensions="4D")
+    surface("ShaderNodeBsdfDiffuse", "Shader", noisy, Color=noise.outputs["Color"])
     noise.inputs["W"].driver_add("default_value").driver.expression = "frame * 0.5"
-    driven.data.materials.append(noisy)
+    ball(scene, "Driven", 0.4, 8, location=(1.4, 0.0, 0.4), material=noisy)
     light = bpy.data.objects["Light"]
     keyed(light.data, "energy", 200.0, 100.0, 0.0, 50.0)
     keyed(light.data, "color", (1, 1, 1), (1, 0.5, 0.2), (1, 1, 1), (0.2, 0.5, 1))
     second = add_light(scene, "POINT", "Second", energy=60.0)
-    keyed(second, "hide_render", True, False, False, True)
-    keyed(second, "hide_viewport", True, False, False, True)
+    for name in ("hide_render", "hide_viewport"):
+        keyed(second, name, True, False, False, True)
     keyed(scene.world.node_tree.nodes["Background"].inputs["Strength"], "default_value", 1.0, 1.0, 2.0, 0.0)
 
 
 def visibility(scene: bpy.types.Scene, folder: Path) -> None:
     """Objects come and go, for all and for some kinds of rays only, until there is nothing to see."""
-    for k, name in enumerate(("Left", "Middle", "Right")):
-        thing = ball(scene, name, 0.5, location=(1.2 * k - 1.2, 0.0, 0.5))
-        thing.data.materials.append(bpy.data.materials["White"])
-    left, middle, right = (bpy.data.objects[name] for name in ("Left", "Middle", "Right"))
+    left, middle, right = (
+        ball(scene, name, 0.5, location=(1.2 * k - 1.2, 0.0, 0.5), material=bpy.data.materials["White"])
+        for k, name in enumerate(("Left", "Middle", "Right"))
+    )
     for name in ("hide_render", "hide_viewport"):
         keyed(left, name, False, True, False, True)
         keyed(right, name, False, False, True, True)
@@ -286,12 +267,11 @@ def visibility(scene: bpy.types.Scene, folder: Path) -> None:
 
 def cameras(scene: bpy.types.Scene, folder: Path) -> None:
     """Markers switch cameras: a pinhole, a lens, an orthographic one and a panorama."""
-    ball(scene, "Glass", 0.6, location=(0.0, 0.0, 0.7)).data.materials.append(glass())
+    ball(scene, "Glass", 0.6, location=(0.0, 0.0, 0.7), material=glass())
     for k, frame in enumerate(FRAMES):
         data = bpy.data.cameras.new(f"Camera {k}")
         camera = add_object(scene, data.name, data, location=(0.3 * k, -4.0, 1.5), rotation_euler=(1.4, 0.0, 0.05 * k))
-        marker = scene.timeline_markers.new(f"Cut {k}", frame=frame)
-        marker.camera = camera
+        scene.timeline_markers.new(f"Cut {k}", frame=frame).camera = camera
         if k == 1:
             data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 4.0, 0.5
         elif k == 2:
@@ -304,34 +284,26 @@ def image_sequence(scene: bpy.types.Scene, folder: Path) -> None:
     """Pictures that change with the frame, on a surface and as light from a world."""
     generator = np.random.default_rng(1)
     for frame in FRAMES:
-        picture = bpy.data.images.new("Frame", 4, 4)
-        picture.pixels.foreach_set(generator.random(64, np.float32))
-        picture.filepath_raw, picture.file_format = str(folder / f"picture_{frame:04d}.png"), "PNG"
-        picture.save()
+        picture = new_image("Frame", generator.random((4, 4, 4), np.float32))
+        save_png(picture, folder / f"picture_{frame:04d}.png")
         bpy.data.images.remove(picture)
     sequence = bpy.data.images.load(str(folder / "picture_0001.png"))
     sequence.source = "SEQUENCE"
-    shown = new_material("Shown")
-    for owner, target in (
-        (shown, add_node(shown.node_tree, "ShaderNodeBsdfDiffuse", "Shader")),
-        (scene.world, scene.world.node_tree.nodes["Background"]),
-    ):
-        kind = "ShaderNodeTexImage" if owner is shown else "ShaderNodeTexEnvironment"
-        texture = add_node(owner.node_tree, kind, "Picture")
-        texture.image = sequence
-        user = texture.image_user
+    shown, tree = new_material("Shown"), scene.world.node_tree
+    pictures = add_node(shown.node_tree, "ShaderNodeTexImage", "Picture", image=sequence)
+    surface("ShaderNodeBsdfDiffuse", "Shader", shown, Color=pictures.outputs["Color"])
+    sky = add_node(tree, "ShaderNodeTexEnvironment", "Picture", image=sequence)
+    link(tree, sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    for user in (pictures.image_user, sky.image_user):
         user.frame_duration, user.frame_start, user.use_auto_refresh = len(FRAMES), FRAMES[0], True
-        link(owner.node_tree, texture.outputs["Color"], target.inputs["Color"])
-    to_surface(shown, shown.node_tree.nodes["Shader"])
-    screen = add_mesh(scene, "Screen", [(-1, 0, 0), (1, 0, 0), (1, 0, 2), (-1, 0, 2)])
+    screen = add_mesh(scene, "Screen", [(-1, 0, 0), (1, 0, 0), (1, 0, 2), (-1, 0, 2)], material=shown)
     layer = screen.data.uv_layers.new(name="UVMap")
     layer.data.foreach_set("uv", [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0])
-    screen.data.materials.append(shown)
 
 
 def nothing(scene: bpy.types.Scene, folder: Path) -> None:
     """Nothing changes."""
-    ball(scene, "Glass", 0.6, location=(0.0, 0.0, 0.7)).data.materials.append(glass())
+    ball(scene, "Glass", 0.6, location=(0.0, 0.0, 0.7), material=glass())
 
 
 ANIMATIONS = (

@@ -2,19 +2,19 @@
 """Frames that follow each other: each is that of a fresh render, bit for bit, and only what changed is done anew."""
 
 import os
+import weakref
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, link, new_material, set_world, to_surface
+from blender_scenes import add_light, add_mesh, add_node, collect, new_material, set_world, surface
+from exr import read_channels, write_exr
+from recorder import Recorder, record
 
 from rppm_addon.blender.engine import frame_reuse
-from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.surfaces.geometry import Geometry
-from rppm_addon.session.render.observers import RenderObserver, observing
 
 LAST = 6
 
@@ -32,9 +32,10 @@ def keyed(owner, path, values):
 
 
 def colored(name, color):
-    material = new_material(name)
-    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfDiffuse", Color=(*color, 1.0)))
-    return material
+    return surface("ShaderNodeBsdfDiffuse", material=new_material(name), Color=(*color, 1.0))[0]
+
+
+COLORS = {"Red": (0.8, 0.1, 0.1), "Blue": (0.1, 0.1, 0.8), "Changing": (0.1, 0.8, 0.1)}
 
 
 @pytest.fixture
@@ -48,29 +49,23 @@ def moving(lit):
     floor.scale = (3.0, 3.0, 1.0)
     keyed(lit.camera, "location", [(0.1 * frame, 0.0, 5.0) for frame in range(LAST)])
 
-    row = add_mesh(lit, "Row", location=(-1.0, 0.5, 0.5), scale=(0.3, 0.3, 1.0))
-    row.data.materials.append(colored("Red", (0.8, 0.1, 0.1)))
+    red, blue, changing = (colored(name, color) for name, color in COLORS.items())
+    row = add_mesh(lit, "Row", location=(-1.0, 0.5, 0.5), scale=(0.3, 0.3, 1.0), material=red)
     array = row.modifiers.new("Array", "ARRAY")
     array.relative_offset_displace = (1.3, 0.0, 0.0)
     keyed(row, "modifiers[0].count", (1, 1, 3, 3, 2, 2))
 
-    gone = add_mesh(lit, "Gone", location=(0.8, -0.8, 1.0), scale=(0.5, 0.5, 1.0))
-    gone.data.materials.append(colored("Blue", (0.1, 0.1, 0.8)))
+    gone = add_mesh(lit, "Gone", location=(0.8, -0.8, 1.0), scale=(0.5, 0.5, 1.0), material=blue)
     keyed(gone, "hide_render", (False, False, False, True, True, False))
 
-    changing = colored("Changing", (0.1, 0.8, 0.1))
-    shown = add_mesh(lit, "Shown", location=(-0.8, -0.8, 0.5), scale=(0.5, 0.5, 1.0))
-    shown.data.materials.append(changing)
+    add_mesh(lit, "Shown", location=(-0.8, -0.8, 0.5), scale=(0.5, 0.5, 1.0), material=changing)
     colors = [(0.1 * frame, 0.8, 0.1, 1.0) for frame in (1, 1, 2, 2, 2, 3)]
     keyed(changing, 'node_tree.nodes["Diffuse BSDF"].inputs[0].default_value', colors)
 
     asking = new_material("Asking")
-    glow = add_node(asking.node_tree, "ShaderNodeEmission")
-    attribute = add_node(asking.node_tree, "ShaderNodeAttribute")
-    attribute.attribute_type, attribute.attribute_name = "VIEW_LAYER", "glow"
-    link(asking.node_tree, attribute.outputs["Fac"], glow.inputs["Strength"])
-    to_surface(asking, glow)
-    add_mesh(lit, "Glowing", location=(0.9, 0.9, 0.2), scale=(0.3, 0.3, 1.0)).data.materials.append(asking)
+    glow = add_node(asking.node_tree, "ShaderNodeAttribute", attribute_type="VIEW_LAYER", attribute_name="glow")
+    surface("ShaderNodeEmission", material=asking, Strength=glow.outputs["Fac"])
+    add_mesh(lit, "Glowing", location=(0.9, 0.9, 0.2), scale=(0.3, 0.3, 1.0), material=asking)
     keyed(lit, '["glow"]', (0.5, 0.5, 0.5, 0.5, 2.0, 2.0))
 
     light = add_light(lit, "POINT", "Light", energy=50.0)
@@ -81,16 +76,12 @@ def moving(lit):
 
 
 def pixels(path):
-    with OpenEXR.File(str(path)) as file:
-        return np.concatenate([channel.pixels.reshape(-1) for channel in file.channels().values()])
+    """All numbers of a file."""
+    return np.concatenate([channel.reshape(-1) for _, channel in sorted(read_channels(path)[0].items())])
 
 
 def write_exr_files(scene, folder):
-    settings = scene.render.image_settings
-    if hasattr(settings, "media_type"):
-        settings.media_type = "IMAGE"
-    settings.file_format, settings.color_depth = "OPEN_EXR", "32"
-    scene.render.filepath = str(folder / "####.exr")
+    write_exr(scene, folder / "####.exr", is_multilayer=False)
 
 
 def animation(scene, folder, persistent):
@@ -117,9 +108,14 @@ def test_each_frame_is_that_of_a_fresh_render(moving, tmp_path, use_animated_see
     moving.rppm.use_animated_seed = use_animated_seed
     fresh = [still(moving, tmp_path, frame) for frame in range(1, LAST + 1)]
     assert len({picture.tobytes() for picture in fresh}) == LAST
+    assert_same(moving, tmp_path, fresh)
+
+
+def assert_same(scene, folder, fresh):
+    """Frames of an animation are those of fresh renders, whether or not Blender keeps what it has evaluated."""
     for persistent in (False, True):
-        pictures = animation(moving, tmp_path, persistent)
-        for frame, (shown, expected) in enumerate(zip(pictures, fresh), 1):
+        pictures = animation(scene, folder, persistent)
+        for frame, (shown, expected) in enumerate(zip(pictures, fresh, strict=True), 1):
             assert shown.tobytes() == expected.tobytes(), (persistent, frame, np.abs(shown - expected).max())
 
 
@@ -132,10 +128,7 @@ def test_each_blurred_frame_is_that_of_a_fresh_render(moving, tmp_path, position
     render.use_motion_blur, render.motion_blur_shutter, render.motion_blur_position = True, 0.9, position
     fresh = [still(moving, tmp_path, frame) for frame in range(1, 4)]
     assert fresh[1].tobytes() != sharp.tobytes()
-    for persistent in (False, True):
-        pictures = animation(moving, tmp_path, persistent)
-        for frame, (shown, expected) in enumerate(zip(pictures, fresh), 1):
-            assert shown.tobytes() == expected.tobytes(), (persistent, frame, np.abs(shown - expected).max())
+    assert_same(moving, tmp_path, fresh)
     render.use_persistent_data = True
     for frame in (1, 3):  # sharp, then blurred, which takes in what Blender tells
         moving.frame_set(frame)
@@ -172,27 +165,16 @@ def test_layers_take_turns(moving, tmp_path):
     """With persistent data Blender tells of a layer's depsgraph as if it had been there in the frame before."""
     scene = moving
     second = scene.view_layers.new("Second")
-    hidden = bpy.data.collections.new("Hidden")
+    hidden = collect(scene, bpy.data.objects["Row"], name="Hidden")
     scene.collection.children.link(hidden)
-    scene.collection.objects.unlink(bpy.data.objects["Row"])
-    hidden.objects.link(bpy.data.objects["Row"])
     second.layer_collection.children["Hidden"].exclude = True
     scene.frame_end = 3
-    scenes = []
-
-    class Keeper(RenderObserver):
-        def on_scene(self, scene):
-            scenes.append({instance.object_name for instance in scene.instances})
-            return True
-
     for persistent in (False, True):
         scene.render.use_persistent_data = persistent
-        scenes.clear()
         write_exr_files(scene, tmp_path)
-        with observing(Keeper()):
-            bpy.ops.render.render(animation=True)
-        assert len(scenes) == 6
-        assert all(("Row" in names) is (number % 2 == 0) for number, names in enumerate(scenes))
+        scenes = record(animation=True).scenes
+        shown = ["Row" in {instance.object_name for instance in exported.instances} for exported in scenes]
+        assert shown == [True, False] * 3
     scene.render.use_persistent_data = False
 
 
@@ -202,11 +184,7 @@ def test_a_broken_frame_ends_nothing_but_itself(moving, tmp_path, persistent):
     moving.frame_end = 3
     keyed(moving, "rppm.radius_minimum", (0.0, 2.0, 0.0))
     keyed(moving, "rppm.radius_maximum", (0.0, 1.0, 0.0))
-    errors = []
-
-    class Keeper(RenderObserver):
-        def on_error(self, text):
-            errors.append(text)
+    recorder = Recorder()
 
     write_exr_files(moving, tmp_path)
     moving.render.use_persistent_data = persistent
@@ -219,11 +197,10 @@ def test_a_broken_frame_ends_nothing_but_itself(moving, tmp_path, persistent):
 
     bpy.app.handlers.render_write.insert(0, date)
     try:
-        with observing(Keeper()):
-            bpy.ops.render.render(animation=True)
+        record(recorder, animation=True)
     finally:
         bpy.app.handlers.render_write.remove(date)
-    assert len(errors) == 1 and "radius_maximum" in errors[0]
+    assert len(recorder.errors) == 1 and "radius_maximum" in recorder.errors[0]
     for frame, picture in zip((1, 3), expected):
         assert pixels(tmp_path / f"{frame:04d}.exr").tobytes() == picture.tobytes()
     assert not (tmp_path / "0002.exr").exists()
@@ -244,26 +221,16 @@ def test_broken_layers_do_not_end_blender(moving, tmp_path):
         bpy.ops.render.render()
 
 
-def test_what_is_kept_is_dropped_with_the_file(moving, tmp_path):
-    moving.frame_end = 1
-    animation(moving, tmp_path, False)
-    assert frame_reuse._last is not None
+def test_what_is_kept_is_dropped_with_the_file(moving):
+    recorder = record(write_still=False)
+    kept = weakref.ref(recorder.scenes.pop())
+    assert kept() is not None
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    assert frame_reuse._last is None
-    assert renderer_thread._shared._thread.is_alive()  # the programs stay
+    assert kept() is None
 
 
 def test_a_scene_that_is_rendered_again_is_the_scene_before(lit):
-    seen = []
-
-    class Keeper(RenderObserver):
-        def on_scene(self, scene):
-            seen.append(scene)
-            return True
-
     set_world(lit, (0.1, 0.1, 0.1))
     lit.render.use_stamp_date = False  # it is another each second
-    with observing(Keeper()):
-        for _ in range(2):
-            bpy.ops.render.render()
+    seen = [record().scenes[0] for _ in range(2)]
     assert seen[0] is seen[1]

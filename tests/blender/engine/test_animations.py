@@ -8,6 +8,8 @@ import bpy
 import numpy as np
 import pytest
 from animations import ANIMATIONS, FRAMES, nothing, stage
+from blender_scenes import depsgraph, following
+from recorder import record
 
 from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.export import SceneSync, export_scene
@@ -16,23 +18,9 @@ from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 from rppm_addon.session.render.frame_reading import read_frame
-from rppm_addon.session.render.observers import RenderObserver, observing
 from rppm_addon.session.render.results import Frame
 
 ITERATIONS = 3
-
-
-class Frames(RenderObserver):
-    """Keeps the pictures of an animation, and what was reported."""
-
-    def __init__(self):
-        self.frames, self.errors = [], []
-
-    def on_finish(self, result, scene):
-        self.frames.append(result.frame)
-
-    def on_error(self, text):
-        self.errors.append(text)
 
 
 @pytest.fixture(scope="module")
@@ -60,9 +48,7 @@ def fresh_scene(frame: int, monkeypatch) -> Scene:
     """The scene that a render of one frame exports when nothing is known before."""
     exported = []
     with monkeypatch.context() as patch:
-        patch.setattr(
-            engine_module, "render_final", lambda engine, depsgraph: exported.append(export_scene(depsgraph, engine))
-        )
+        patch.setattr(engine_module, "render_final", lambda engine, graph: exported.append(export_scene(graph, engine)))
         bpy.context.scene.frame_set(frame)
         bpy.ops.render.render()
     (scene,) = exported
@@ -111,8 +97,7 @@ each_animation = pytest.mark.parametrize("animation", ANIMATIONS, ids=lambda ani
 def test_frames_are_those_rendered_alone(animated, animation, persistent, device, tmp_path, monkeypatch):
     animation(animated, tmp_path)
     animated.render.use_persistent_data = persistent
-    with observing(Frames()) as seen:
-        bpy.ops.render.render(animation=True)
+    seen = record(animation=True)
     assert len(seen.frames) == len(FRAMES)
     for number, frame in zip(FRAMES, seen.frames, strict=True):
         assert_same(frame, fresh_picture(fresh_scene(number, monkeypatch), device), f"frame {number}")
@@ -133,20 +118,19 @@ def test_renders_of_other_sizes_are_those_of_fresh_renderers(animated, device, t
     """Blender has no keyframes for the resolution: a script changes it between renders."""
     nothing(animated, tmp_path)
     bpy.app.handlers.frame_change_pre.append(resize)  # loading a file removes it
-    with observing(Frames()) as seen:
-        for number in FRAMES:
-            animated.frame_set(number)
-            bpy.ops.render.render()
-    assert [frame.combined.shape[:2] for frame in seen.frames] == [(32 * share // 100,) * 2 for share in SHARES]
-    for number, frame in zip(FRAMES, seen.frames, strict=True):
+    frames = []
+    for number in FRAMES:
+        animated.frame_set(number)
+        frames += record().frames
+    assert [frame.combined.shape[:2] for frame in frames] == [(32 * share // 100,) * 2 for share in SHARES]
+    for number, frame in zip(FRAMES, frames, strict=True):
         assert_same(frame, fresh_picture(fresh_scene(number, monkeypatch), device), f"frame {number}")
 
 
 def test_an_animation_cannot_change_its_size(animated):
     """Blender lays out all its frames as large as the first one."""
     bpy.app.handlers.frame_change_pre.append(resize)
-    with observing(Frames()) as seen:
-        bpy.ops.render.render(animation=True)
+    seen = record(animation=True)
     assert [frame.combined.shape[:2] for frame in seen.frames] == [(32, 32)]
     assert len(seen.errors) == len(FRAMES) - 1 and all("one at a time" in text for text in seen.errors)
 
@@ -154,22 +138,17 @@ def test_an_animation_cannot_change_its_size(animated):
 @each_animation
 def test_playback_shows_what_a_fresh_viewport_does(animated, animation, device, tmp_path):
     animation(animated, tmp_path)
-    sync = SceneSync()
-    camera = export_scene(bpy.context.evaluated_depsgraph_get()).camera
-
-    def follow(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-        sync.update(depsgraph, camera)
-
-    bpy.app.handlers.frame_change_post.append(follow)  # loading a file removes it
+    sync, camera = SceneSync(), export_scene(depsgraph()).camera
     context, library = device
     with context.moderngl:
         mapper = ProgressivePhotonMapper(context, library)
-    for number in (*FRAMES, 2, 1):
-        animated.frame_set(number)
-        fresh = SceneSync().update(bpy.context.evaluated_depsgraph_get(), camera)
-        with context.moderngl:
-            mapper.update(sync.scene)
-            frame = picture(mapper, sync.scene)
-        assert_same(frame, fresh_picture(fresh, device), f"frame {number}")
+    with following(lambda graph: sync.update(graph, camera)):
+        for number in (*FRAMES, 2, 1):
+            animated.frame_set(number)
+            fresh = SceneSync().update(depsgraph(), camera)
+            with context.moderngl:
+                mapper.update(sync.scene)
+                frame = picture(mapper, sync.scene)
+            assert_same(frame, fresh_picture(fresh, device), f"frame {number}")
     with context.moderngl:
         mapper.release()

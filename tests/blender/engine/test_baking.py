@@ -4,9 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, new_material, to_surface
+from blender_scenes import add_light, add_mesh, new_material, surface
+from engine_calls import Proxy
 from support.baking import add_uv_map, aim_at, bake, select
-from test_engine import Proxy
 
 from rppm_addon.blender.engine import baking
 from rppm_addon.blender.engine import render_engine as engine_module
@@ -66,8 +66,7 @@ def test_colors_of_vertices(quad, lit, domain):
 
 
 def test_two_objects_share_a_texture(quad, lit):
-    other = add_mesh(lit, "Slope", *SLOPE, location=(8.0, 0.0, 0.0))
-    other.data.materials.append(quad.data.materials[0])
+    other = add_mesh(lit, "Slope", *SLOPE, location=(8.0, 0.0, 0.0), material=quad.data.materials[0])
     add_uv_map(other)
     for owner, start in ((quad, 0.0), (other, 0.5)):
         for place in owner.data.uv_layers[0].uv:
@@ -79,8 +78,8 @@ def test_two_objects_share_a_texture(quad, lit):
 
 def test_normals_of_a_detailed_object_for_a_plain_one(quad, lit):
     """The quad beneath a slope takes its normals, which Blender turns to the space that was asked for."""
-    slope = add_mesh(lit, "Slope", [(x, y, 0.1 * z) for x, y, z in SLOPE[0]], SLOPE[1])
-    slope.data.materials.append(quad.data.materials[0])
+    slope = [(x, y, 0.1 * z) for x, y, z in SLOPE[0]]
+    slope = add_mesh(lit, "Slope", slope, SLOPE[1], material=quad.data.materials[0])
     tangent = bake(
         quad, others=(slope,), type="NORMAL", use_selected_to_active=True, cage_extrusion=0.5, normal_space="TANGENT"
     )
@@ -156,12 +155,10 @@ def test_stopping_during_the_export(quad, monkeypatch):
 
 def test_surfaces_seen_from_the_camera(quad, lit):
     """A mirror shows the sky straight above itself, or what the camera sees in it: a glowing wall."""
-    mirror, glow = new_material("Mirror"), new_material("Glow")
-    to_surface(mirror, add_node(mirror.node_tree, "ShaderNodeBsdfAnisotropic", Roughness=0.0, Color=(1, 1, 1, 1)))
-    to_surface(glow, add_node(glow.node_tree, "ShaderNodeEmission", Color=(1, 1, 1, 1), Strength=3.0))
-    quad.data.materials[0] = mirror
-    wall = add_mesh(lit, "Wall", [(20, -40, 0), (20, 40, 0), (20, 40, 60), (20, -40, 60)], [(0, 1, 2, 3)])
-    wall.data.materials.append(glow)
+    white = (1, 1, 1, 1)
+    quad.data.materials[0], _ = surface("ShaderNodeBsdfAnisotropic", Roughness=0.0, Color=white)
+    glow, _ = surface("ShaderNodeEmission", material=new_material("Glow"), Color=white, Strength=3.0)
+    add_mesh(lit, "Wall", [(20, -40, 0), (20, 40, 0), (20, 40, 60), (20, -40, 60)], material=glow)
     add_light(lit, "POINT", energy=0.0)
     lit.camera.data.type = "PERSP"
     lit.camera.location = (-5.0, 0.0, 5.0)

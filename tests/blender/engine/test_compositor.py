@@ -3,9 +3,9 @@
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
-from blender_scenes import add_mesh, add_node, new_material, set_world, to_surface
+from blender_scenes import add_mesh, add_node, new_material, set_world, surface
+from exr import read_layers, write_exr
 
 from rppm_addon.scene.cryptomatte import identifiers_of
 from rppm_addon.scene.passes import NOISY_IMAGE, PASSES
@@ -43,15 +43,12 @@ def stage(lit):
         "Catcher": ((0.0, -1.5, 0.0), (0.0, 0.0, 0.0), 0.4),
     }
     for number, (name, (kind, inputs)) in enumerate(materials.items()):
-        material = new_material(name)
-        to_surface(material, add_node(material.node_tree, kind, **inputs))
+        material, _ = surface(kind, material=new_material(name), **inputs)
         material.pass_index = 10 + number
         location, rotation, scale = places[name]
-        shown = add_mesh(
-            lit, name, location=location, rotation_euler=rotation, scale=(scale,) * 3, pass_index=number + 1
-        )
+        place = {"location": location, "rotation_euler": rotation, "scale": (scale,) * 3}
+        shown = add_mesh(lit, name, material=material, pass_index=number + 1, **place)
         shown.data.uv_layers.new(name="UVMap")
-        shown.data.materials.append(material)
     lit.objects["Catcher"].is_shadow_catcher = True
     for frame in (0, 2):
         lit.objects["Glow"].location.x = -0.7 + 0.1 * frame
@@ -111,18 +108,7 @@ def compositor(scene, folder):
 
 def planes(path):
     """By layer, (SIZE, SIZE, channels), the channels in the order of their letters in Blender."""
-    found = {}
-    with OpenEXR.File(str(path), separate_channels=True) as file:
-        for part in file.parts:
-            for name, channel in part.channels.items():
-                layer, _, letter = name.rpartition(".")
-                layer = layer.removeprefix("ViewLayer.")
-                found.setdefault(layer, {})[letter.upper()] = channel.pixels
-    letters = "RGBXYZUVAW"
-    return {
-        layer: np.stack([values[letter] for letter in sorted(values, key=letters.index)], axis=-1)
-        for layer, values in found.items()
-    }
+    return {layer.removeprefix("ViewLayer."): values for layer, values in read_layers(path).items()}
 
 
 def test_every_pass_arrives_in_the_compositor(stage, tmp_path):
@@ -130,9 +116,7 @@ def test_every_pass_arrives_in_the_compositor(stage, tmp_path):
     expected = {entry.name for entry in PASSES if entry.accumulation.name != "COVERAGE"} | {NOISY_IMAGE.name}
     assert expected <= sockets | {"Image"}, expected - sockets
     stage.render.use_compositing = True
-    image = stage.render.image_settings
-    image.media_type = "MULTI_LAYER_IMAGE"
-    image.color_depth, stage.render.filepath = "32", str(tmp_path / "picture.exr")
+    write_exr(stage, tmp_path / "picture.exr")
     bpy.ops.render.render(write_still=True)
     written, rendered = planes(next(tmp_path.glob("written*.exr"))), planes(tmp_path / "picture.exr")
     for name, picture in rendered.items():

@@ -5,9 +5,9 @@ import json
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
-from blender_scenes import add_mesh, add_node, export
+from blender_scenes import add_mesh, add_node, export, node_group
+from exr import read_channels, write_exr
 
 from rppm_addon.scene.cryptomatte import hash_of, identifiers_of
 
@@ -26,20 +26,15 @@ def quads(lit):
     return lit
 
 
-def render(scene: bpy.types.Scene, path, file_format: str) -> OpenEXR.File:
-    settings = scene.render.image_settings
-    if hasattr(settings, "media_type"):
-        settings.media_type = "MULTI_LAYER_IMAGE" if file_format.endswith("MULTILAYER") else "IMAGE"
-    settings.file_format, settings.color_depth = file_format, "32"
-    scene.render.filepath = str(path / "picture.exr")
+def render(scene: bpy.types.Scene, path, is_multilayer=True):
+    """Pixels by the channel's name, and the header of the file."""
+    write_exr(scene, path / "picture.exr", is_multilayer)
     bpy.ops.render.render(write_still=True)
-    return OpenEXR.File(scene.render.filepath, separate_channels=True)
+    return read_channels(path / "picture.exr")
 
 
 def test_names_and_shares_are_in_the_file(quads, tmp_path):
-    with render(quads, tmp_path, "OPEN_EXR_MULTILAYER") as file:
-        channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
-        header = dict(file.header())
+    channels, header = render(quads, tmp_path)
     assert sorted({name.rpartition(".")[0] for name in channels if "Crypto" in name}) == [
         f"ViewLayer.Crypto{layer}{part:02d}" for layer in ("Asset", "Object") for part in range(2)
     ]
@@ -58,14 +53,13 @@ def test_names_and_shares_are_in_the_file(quads, tmp_path):
 
 @pytest.mark.skipif(bpy.app.version < (5, 0), reason="compositors are node groups since Blender 5.0")
 def test_the_compositor_picks_by_name(quads, tmp_path):
-    tree = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+    tree, _, output = node_group(outputs=[("Image", "Color")], tree_type="CompositorNodeTree")
     quads.compositing_node_group = tree
-    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    matte, output = tree.nodes.new("CompositorNodeCryptomatteV2"), tree.nodes.new("NodeGroupOutput")
-    matte.source, matte.scene, matte.layer_name, matte.matte_id = "RENDER", quads, LAYER, "Quad"
+    matte = add_node(
+        tree, "CompositorNodeCryptomatteV2", source="RENDER", scene=quads, layer_name=LAYER, matte_id="Quad"
+    )
     tree.links.new(matte.outputs["Matte"], output.inputs[0])
-    with render(quads, tmp_path, "OPEN_EXR") as file:
-        picked = file.channels()["R"].pixels
+    picked = render(quads, tmp_path, False)[0]["R"]
     assert picked[16, 12] == 1.0  # the quad
     assert picked[15, 20] == 0.0  # the small one before it
     assert picked[2, 2] == 0.0  # nothing
@@ -80,12 +74,11 @@ def test_assets_are_exported_where_they_are_asked_for(quads):
 def test_aov_outputs_of_a_material(quads, tmp_path):
     """In groups as well; those in muted groups and those without a name write nothing."""
     material = bpy.data.objects["Quad"].data.materials[0]
-    group = bpy.data.node_groups.new("Writes", "ShaderNodeTree")
+    group, _, _ = node_group()
     for tree, name, value in ((material.node_tree, "Mask", 0.25), (group, "Mask", 0.5), (group, "", 8.0)):
-        add_node(tree, "ShaderNodeOutputAOV", Value=value, Color=(value, 0.0, 1.0, 1.0)).aov_name = name
+        add_node(tree, "ShaderNodeOutputAOV", aov_name=name, Value=value, Color=(value, 0.0, 1.0, 1.0))
     for mute in (False, True):
-        user = add_node(material.node_tree, "ShaderNodeGroup")
-        user.node_tree, user.mute = group, mute
+        add_node(material.node_tree, "ShaderNodeGroup", node_tree=group, mute=mute)
     layer = quads.view_layers[0]
     for name, kind in (("Mask", "VALUE"), ("Tint", "COLOR"), ("Depth", "VALUE")):
         aov = layer.aovs.add()
@@ -93,8 +86,7 @@ def test_aov_outputs_of_a_material(quads, tmp_path):
     layer.use_pass_z = True
     scene = export(quads)
     assert scene.settings.aovs == ("Mask.X", "Tint.RGBA")
-    with render(quads, tmp_path, "OPEN_EXR_MULTILAYER") as file:
-        channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    channels, _ = render(quads, tmp_path)
     assert channels["ViewLayer.Mask.X"][16, 12] == 0.75 and channels["ViewLayer.Mask.X"][2, 2] == 0.0
     assert not channels["ViewLayer.Tint.R"].any()
     assert channels["ViewLayer.Depth.Z"][16, 12] == pytest.approx(5.0)

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Denoising in Blender: the pass, the panels, the preferences, and the library that Blender ships."""
 
-from pathlib import Path
-from types import SimpleNamespace
-
 import bpy
 import numpy as np
 import pytest
-from drawing import context_of, drawn
-from test_engine import render_exr
+from drawing import context_of, drawn, preferences_context
+from exr import render_exr
 
 from rppm_addon.blender import preferences
 from rppm_addon.blender.panels.render_tab import sampling
@@ -87,36 +84,16 @@ def test_the_compositor_has_a_socket_as_soon_as_it_is_on(scene):
     assert "Noisy Image" not in names()
 
 
-class Process:
-    """Stands in for the renderer process."""
-
-    def __init__(self):
-        self.state, self.error, self.device, self.log_path = ProcessState.RUNNING, "", None, Path("renderer.log")
-        self.restarted = 0
-        self.launcher = SimpleNamespace(denoisers=[])
-
-    def restart(self):
-        self.restarted += 1
-
-    def close(self):
-        self.state = ProcessState.STOPPED
-
-
-def test_the_preferences_say_which_library_is_used(scene, monkeypatch):
-    monkeypatch.setattr(renderer_process, "_process", Process())
-    context = SimpleNamespace(
-        region=SimpleNamespace(width=500), preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
-    )
-    record = drawn(preferences.RppmPreferences, context)
+def test_the_preferences_say_which_library_is_used(process, monkeypatch):
+    record = drawn(preferences.RppmPreferences, preferences_context())
     assert f"of Blender: {denoising_libraries()[0].path}" in record.labels
     monkeypatch.setattr(libraries_module, "library_places", lambda *_: [])
-    record = drawn(preferences.RppmPreferences, context)
+    record = drawn(preferences.RppmPreferences, preferences_context())
     assert "Open Image Denoise is not there" in " ".join(record.labels) and "denoiser_path" in record.properties
 
 
-def test_another_library_starts_the_process_anew(monkeypatch):
-    process = Process()
-    monkeypatch.setattr(renderer_process, "_process", process)
+def test_another_library_starts_a_process_that_runs_anew(process):
+    process.launcher.denoisers, process.state = [], ProcessState.RUNNING
     renderer_process.libraries_changed()
     assert process.launcher.denoisers == denoising_libraries() and process.restarted == 1
     process.state = ProcessState.STOPPED

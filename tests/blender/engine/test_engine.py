@@ -6,38 +6,23 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
-from blender_scenes import set_world
+from blender_scenes import collect, set_world
+from engine_calls import replace_methods
+from exr import render_exr
 from PIL import Image as Picture
+from recorder import Recorder, record
 
 from rppm_addon.blender.engine import final
-from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.render_client import renderer_thread
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.session.checkpoints.checkpoint_file import read_summary
 from rppm_addon.session.render import renderer as session_renderer
-from rppm_addon.session.render.observers import RenderObserver, observing
 
 
-def render_exr(scene, folder, **arguments):
-    """Layers of the picture: name -> (height, width, channels), row 0 at the bottom."""
-    settings = scene.render.image_settings
-    if hasattr(settings, "media_type"):
-        settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
-    scene.render.filepath = str(folder / "picture.exr")
-    bpy.ops.render.render(write_still=True, **arguments)
-    layers = {}
-    with OpenEXR.File(scene.render.filepath, separate_channels=True) as file:
-        for part in file.parts:
-            for name, channel in part.channels.items():
-                layer, letter = name.rsplit(".", 1)
-                layers.setdefault(layer, {})[letter] = channel.pixels[::-1]
-    return {
-        layer: np.stack([channels[letter] for letter in "RGBAXYZ" if letter in channels], axis=-1)
-        for layer, channels in layers.items()
-    }
+def read_png(path):
+    with Picture.open(path) as picture:
+        return np.asarray(picture.convert("RGB"))
 
 
 def test_picture_and_passes(lit, tmp_path):
@@ -94,12 +79,14 @@ def test_the_deep_cubemap_pass(lit, tmp_path):
     assert costs[2, 2, 2] == 0  # sees nothing
 
 
+def write_png(scene, path):
+    scene.render.image_settings.file_format, scene.render.filepath = "PNG", str(path)
+
+
 def test_png(lit, tmp_path):
-    lit.render.image_settings.file_format = "PNG"
-    lit.render.filepath = str(tmp_path / "picture.png")
+    write_png(lit, tmp_path / "picture.png")
     bpy.ops.render.render(write_still=True)
-    with Picture.open(lit.render.filepath) as picture:
-        pixels = np.asarray(picture.convert("RGB"))
+    pixels = read_png(lit.render.filepath)
     assert pixels.shape == (32, 32, 3) and pixels[16, 16].min() > 150 and pixels[2, 2, 0] < 5
 
 
@@ -130,87 +117,30 @@ def test_border(lit, tmp_path, cropped):
 
 def test_every_view_layer_is_rendered(lit, tmp_path):
     second = lit.view_layers.new("Second")
-    hidden = bpy.data.collections.new("Hidden")
-    lit.collection.children.link(hidden)
-    quad = bpy.data.objects["Quad"]
-    hidden.objects.link(quad)
-    lit.collection.objects.unlink(quad)
+    lit.collection.children.link(collect(lit, bpy.data.objects["Quad"], name="Hidden"))
     second.layer_collection.children["Hidden"].exclude = True
     layers = render_exr(lit, tmp_path)
     assert layers["ViewLayer.Combined"][16, 16, 0] > 0.5
     assert layers["Second.Combined"][16, 16, 0] < 0.01
 
 
-class Proxy:
-    """The engine with some methods replaced; Blender does not let a class replace its own."""
-
-    def __init__(self, engine, replaced):
-        self._engine = engine
-        self.__dict__.update(replaced)
-
-    def __getattr__(self, name):
-        return getattr(self._engine, name)
-
-
-def replace_methods(monkeypatch, **replaced):
-    """Let renders see an engine whose methods of these names are replaced."""
-    monkeypatch.setattr(
-        engine_module, "render_final", lambda engine, depsgraph: final.render_final(Proxy(engine, replaced), depsgraph)
-    )
-
-
-class Recorder(RenderObserver):
-    def __init__(self):
-        self.calls, self.errors, self.result, self.progress = [], [], None, []
-
-    def on_scene(self, scene):
-        self.calls.append("scene")
-        return True
-
-    def on_start(self, scene):
-        self.calls.append("start")
-
-    def on_progress(self, progress):
-        self.progress.append(progress.iteration)
-
-    def on_finish(self, result, scene):
-        self.calls.append("finish")
-        self.result = result
-
-    def on_error(self, text):
-        self.calls.append("error")
-        self.errors.append(text)
-
-
 def test_the_observer_is_told(lit):
-    recorder = Recorder()
-    with observing(recorder):
-        bpy.ops.render.render()
-    assert recorder.calls == ["scene", "start", "finish"] and recorder.progress[-1] == 2
-    assert recorder.result.statistics.iterations == 2 and recorder.result.frame.combined.shape == (32, 32, 4)
+    recorder = record()
+    assert recorder.calls == ["scene", "start", "finish"] and recorder.iterations[-1] == 2
 
 
 def test_an_observer_may_want_the_scene_only(lit, monkeypatch):
     monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("nothing was to be rendered"))
-
-    class SceneOnly(Recorder):
-        def on_scene(self, scene):
-            self.scene = scene
-            return False
-
-    recorder = SceneOnly()
-    with observing(recorder):
-        bpy.ops.render.render()
-    assert recorder.scene.triangle_count == 2 and recorder.errors == []
+    recorder = record(Recorder(renders=False))
+    assert recorder.scenes[0].triangle_count == 2 and recorder.errors == []
 
 
 @pytest.mark.parametrize("iterations", [1, 3])
 def test_stopping_between_iterations_keeps_the_picture(lit, tmp_path, monkeypatch, iterations):
     lit.rppm.samples = 1000
     recorder = Recorder()
-    replace_methods(monkeypatch, test_break=lambda: bool(recorder.progress) and recorder.progress[-1] >= iterations)
-    with observing(recorder):
-        combined = render_exr(lit, tmp_path)["ViewLayer.Combined"]
+    replace_methods(monkeypatch, test_break=lambda: bool(recorder.iterations) and recorder.iterations[-1] >= iterations)
+    combined = render_exr(lit, tmp_path, observer=recorder)["ViewLayer.Combined"]
     assert recorder.result.stopped and recorder.result.statistics.iterations == iterations
     assert combined[16, 16, 0] > 0.5
 
@@ -224,17 +154,14 @@ def test_stopping_during_the_export(lit, monkeypatch):
 
     replace_methods(monkeypatch, test_break=test_break)
     monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("the export was to be stopped"))
-    recorder = Recorder()
-    with observing(recorder):
-        bpy.ops.render.render()
-    assert len(asked) == 2 and recorder.calls == []
+    assert record().calls == [] and len(asked) == 2
 
 
 def reported_error(lit):
     """The error that Blender's operator raises with what the engine reported."""
     recorder = Recorder()
-    with observing(recorder), pytest.raises(RuntimeError) as raised:
-        bpy.ops.render.render()
+    with pytest.raises(RuntimeError) as raised:
+        record(recorder)
     (text,) = recorder.errors
     assert text in str(raised.value)
     return text
@@ -261,14 +188,10 @@ def test_a_device_error_is_shown(lit, monkeypatch):
 
 
 def test_a_defect_is_shown_and_the_next_render_works(lit, monkeypatch, caplog):
-    with monkeypatch.context() as patched:
-        patched.setattr(final._FinalJob, "on_frame", lambda *_: 1 / 0)
-        with caplog.at_level(logging.CRITICAL + 1):
-            assert "ZeroDivisionError" in reported_error(lit)
-    recorder = Recorder()
-    with observing(recorder):
-        bpy.ops.render.render()
-    assert recorder.calls == ["scene", "start", "finish"]
+    with monkeypatch.context() as patched, caplog.at_level(logging.CRITICAL + 1):
+        replace_methods(patched, update_result=lambda _: 1 / 0)
+        assert "ZeroDivisionError" in reported_error(lit)
+    assert record().calls == ["scene", "start", "finish"]
 
 
 def test_warnings_are_reported(lit, monkeypatch):
@@ -297,23 +220,16 @@ def test_progress_and_status(lit, monkeypatch):
 
 
 def test_the_first_picture_comes_after_the_first_iteration(lit, monkeypatch):
-    shown = []
-    lit.rppm.samples = 3
-    original = final._FinalJob.on_frame
-
-    def on_frame(self, progress, frame):
-        shown.append(progress.iteration)
-        original(self, progress, frame)
-
-    monkeypatch.setattr(final._FinalJob, "on_frame", on_frame)
+    lit.rppm.samples, recorder, shown = 3, Recorder(), []
+    replace_methods(monkeypatch, update_result=lambda _: shown.append(recorder.iterations[-1]))
     monkeypatch.setattr(final, "PICTURE_SECONDS", 0.0)
     monkeypatch.setattr(final, "PICTURE_SHARE", 1e9)
-    bpy.ops.render.render()
-    assert shown == [1, 2]
+    record(recorder)
+    assert shown == [1, 2, 3]  # the last one at the end
     shown.clear()
     lit.rppm.samples, lit.rppm.samples_per_frame = 9, 4
-    bpy.ops.render.render()
-    assert shown == [1, 4, 8]
+    record(recorder)
+    assert shown == [1, 4, 8, 9]
 
 
 def test_animation_keeps_the_renderer(lit, tmp_path, monkeypatch):
@@ -331,13 +247,9 @@ def test_animation_keeps_the_renderer(lit, tmp_path, monkeypatch):
     quad.location.x = 100.0
     quad.keyframe_insert("location", frame=2)
     lit.frame_start, lit.frame_end = 1, 2
-    lit.render.image_settings.file_format = "PNG"
-    lit.render.filepath = str(tmp_path / "frame_")
+    write_png(lit, tmp_path / "frame_")
     bpy.ops.render.render(animation=True)
-    pictures = []
-    for frame in (1, 2):
-        with Picture.open(tmp_path / f"frame_{frame:04d}.png") as picture:
-            pictures.append(np.asarray(picture.convert("RGB")))
+    pictures = [read_png(tmp_path / f"frame_{frame:04d}.png") for frame in (1, 2)]
     assert pictures[0][16, 16, 0] > 150 and pictures[1][16, 16, 0] < 5
     assert made == [True]
 

@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, export, geometry_nodes, new_material, set_world, to_surface
+from blender_scenes import add_light, add_mesh, export, geometry_nodes, set_world, surface
 
 
 def glass_on_a_floor(scene) -> None:
@@ -12,8 +12,7 @@ def glass_on_a_floor(scene) -> None:
 
     Matrices of Blender are of floats: places are multiples of 1/16 m, as these have them at 1,000 km.
     """
-    glass = new_material("Glass")
-    to_surface(glass, add_node(glass.node_tree, "ShaderNodeBsdfGlass", Roughness=0.0))
+    glass, _ = surface("ShaderNodeBsdfGlass", Roughness=0.0)
     bpy.ops.mesh.primitive_cube_add(size=1.0, location=(0.0, 0.0, 0.5625), rotation=(0.0, 0.0, 0.5))
     bpy.context.object.data.materials.append(glass)
     bpy.ops.mesh.primitive_cube_add(size=0.5, location=(1.0, 0.5, 0.25))

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Programs that are compiled while the solid view of a file is looked at."""
 
+import itertools
+import time
 from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_mesh, add_node, add_object, export, link, new_material, to_surface
+from blender_scenes import add_mesh, add_node, add_object, export, new_material, surface
 
-from rppm_addon.blender.engine import preparing
 from rppm_addon.blender.export.images import images
 from rppm_addon.blender.render_client import renderer_process
 from rppm_addon.session.client.client import ProcessState
 from rppm_addon.session.placeholders.known_programs import programs_of
+
+
+pytestmark = pytest.mark.usefixtures("timers")  # before a file is opened
 
 
 @pytest.fixture
@@ -24,25 +28,16 @@ def prepared(monkeypatch):
     return SimpleNamespace(scenes=scenes, process=process)
 
 
-def go_on():
-    """Until there is no more to be done."""
-    while preparing._go_on() is not None:
-        pass
-
-
 def add_picture():
     """A material with an image on the quad."""
     material = new_material("Picture")
-    texture = add_node(material.node_tree, "ShaderNodeTexImage")
-    texture.image = bpy.data.images.new("Picture", 4, 4)
-    surface = add_node(material.node_tree, "ShaderNodeBsdfPrincipled")
-    link(material.node_tree, texture.outputs["Color"], surface.inputs["Base Color"])
-    to_surface(material, surface)
+    image = bpy.data.images.new("Picture", 4, 4)
+    texture = add_node(material.node_tree, "ShaderNodeTexImage", image=image)
+    surface("ShaderNodeBsdfPrincipled", material=material, Base_Color=texture.outputs["Color"])
     bpy.data.objects["Quad"].data.materials.append(material)
-    return material
 
 
-def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepared, monkeypatch):
+def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepared, timers, monkeypatch):
     add_picture()
     exported = export(lit)
     expected = {program for material in exported.materials for program in programs_of(material)}
@@ -51,8 +46,7 @@ def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepar
         raise AssertionError("an image was read")
 
     monkeypatch.setattr(images, "read_pixels", read)
-    monkeypatch.setattr(preparing, "_SLICE_SECONDS", 1e-9)  # a material at a time
-    go_on()
+    timers.run_out()
     (scene,) = prepared.scenes
     assert {program for material in scene.materials for program in programs_of(material)} == expected
     assert (scene.settings.direct_light, scene.warnings) == (exported.settings.direct_light, [])
@@ -74,27 +68,29 @@ def add_particle_hair(scene):
 
 
 @pytest.mark.parametrize("add_strands", [add_curves, add_particle_hair])
-def test_programs_of_strands_are_those_of_strands(lit, prepared, add_strands):
-    add_strands(lit).data.materials.append(material := new_material("Hair"))
-    to_surface(material, add_node(material.node_tree, "ShaderNodeBsdfHair"))
+def test_programs_of_strands_are_those_of_strands(lit, prepared, timers, add_strands):
+    material, _ = surface("ShaderNodeBsdfHair", material=new_material("Hair"))
+    add_strands(lit).data.materials.append(material)
     (expected,) = (made for made in export(lit).materials if made.name == material.name)
-    go_on()
+    timers.run_out()
     (found,) = (made for made in prepared.scenes[0].materials if made.name == material.name)
     assert found.on_round_shapes and programs_of(found) == programs_of(expected)
 
 
-def test_nothing_is_prepared_for_other_engines_or_beside_a_render(lit, prepared):
-    prepared.process.state = ProcessState.RUNNING
-    go_on()
-    prepared.process.state = ProcessState.STOPPED
-    lit.render.engine = "BLENDER_WORKBENCH"
-    go_on()
+@pytest.mark.parametrize(("state", "engine"), [("RUNNING", "RPPM"), ("STOPPED", "BLENDER_WORKBENCH")])
+def test_nothing_is_prepared_for_other_engines_or_beside_a_render(lit, prepared, timers, state, engine):
+    prepared.process.state, lit.render.engine = ProcessState[state], engine
+    timers.run_out()
     assert prepared.scenes == []
 
 
-def test_another_file_begins_anew(lit, prepared):
-    preparing._preparing = preparing._Preparing()
+def test_another_file_begins_anew(lit, prepared, timers, monkeypatch):
+    """Though the one before is half done."""
+    add_picture()
+    with monkeypatch.context() as patched:
+        patched.setattr(time, "monotonic", itertools.count().__next__)  # there is time for a material
+        assert timers[-1]() is not None
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    assert preparing._preparing is None and bpy.app.timers.is_registered(preparing._go_on)
-    preparing._stop()
-    assert not bpy.app.timers.is_registered(preparing._go_on)
+    bpy.context.scene.render.engine = "RPPM"
+    timers.run_out()
+    assert all(scene.materials == [] for scene in prepared.scenes) and prepared.scenes

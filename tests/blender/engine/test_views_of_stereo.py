@@ -4,26 +4,13 @@
 import bpy
 import numpy as np
 import pytest
+from blender_scenes import add_object
+from recorder import Recorder, record
 
 from rppm_addon.pictures import PictureName
 from rppm_addon.session.checkpoints.checkpoint_file import read_summary
-from rppm_addon.session.render.observers import RenderObserver, observing
 
 DISTANCE = 0.2
-
-
-class Taker(RenderObserver):
-    """Takes the scene of each picture and has none of them rendered."""
-
-    def __init__(self):
-        self.names, self.scenes = [], []
-
-    def on_picture(self, name):
-        self.names.append(name)
-
-    def on_scene(self, scene):
-        self.scenes.append(scene)
-        return False
 
 
 @pytest.fixture
@@ -36,11 +23,9 @@ def stereo(lit):
 
 
 def taken():
-    taker = Taker()
-    with observing(taker):
-        bpy.ops.render.render()
-    assert taker.names == [PictureName("ViewLayer", eye) for eye in ("left", "right")]
-    return taker.scenes
+    recorder = record(Recorder(renders=False))
+    assert recorder.pictures == [PictureName("ViewLayer", eye) for eye in ("left", "right")]
+    return recorder.scenes
 
 
 @pytest.mark.parametrize("persistent", [False, True])
@@ -56,9 +41,7 @@ def test_each_view_has_the_camera_that_blender_gives(stereo, persistent):
 @pytest.mark.parametrize("views", ["STEREO_3D", "MULTIVIEW"])
 def test_both_eyes_of_what_is_no_camera_are_where_it_is(stereo, views):
     """An object without data, which Blender would crash on if asked for its eyes."""
-    empty = bpy.data.objects.new("Empty", None)
-    empty.location = 0.0, 0.0, 5.0
-    stereo.collection.objects.link(empty)
+    empty = add_object(stereo, "Empty", None, location=(0.0, 0.0, 5.0))
     stereo.camera, stereo.render.views_format = empty, views
     for scene in taken():
         np.testing.assert_allclose(scene.camera.matrix[:3, 3], (0.0, 0.0, 5.0), atol=1e-6)
@@ -88,7 +71,4 @@ def test_checkpoints_are_of_each_view(stereo, tmp_path):
 
 def test_one_view_is_left_alone(stereo):
     stereo.render.views["right"].use = False
-    taker = Taker()
-    with observing(taker):
-        bpy.ops.render.render()
-    assert taker.names == [PictureName("ViewLayer", "left")]
+    assert record(Recorder(renders=False)).pictures == [PictureName("ViewLayer", "left")]

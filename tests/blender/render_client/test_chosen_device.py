@@ -8,65 +8,66 @@ from types import SimpleNamespace
 import bpy
 import pytest
 
-from rppm_addon.blender import preferences
-from rppm_addon.blender.render_client import chosen_device, renderer_process
+from rppm_addon.blender.render_client.chosen_device import chosen_device
 from rppm_addon.gl.context.devices import Device
-
-
-@pytest.fixture
-def stored(monkeypatch):
-    """Preferences of a user, which no environment overrules."""
-    monkeypatch.delenv("RPPM_DEVICE", raising=False)
-    monkeypatch.setattr(renderer_process, "_process", SimpleNamespace(device=None))
-    changes = []
-    monkeypatch.setattr(renderer_process, "device_changed", lambda: changes.append(True))
-    return SimpleNamespace(devices="", changes=changes)
-
+from rppm_addon.session.client.client import ProcessState
 
 CARD = Device(0, "1002:73bf@0000:03:00.0", "discrete", "A card", "Mesa 25", 16 << 30)
 CHIP = Device(1, "8086:9a49@0000:00:02.0", "integrated", "A chip")
 
 
-def test_each_machine_has_its_own(stored, monkeypatch):
-    renderer_process._process.device = SimpleNamespace(devices=[CARD, CHIP])
+@pytest.fixture
+def preferences(process, monkeypatch):
+    """RPPM's preferences as Blender keeps them, which no environment overrules, of a process that runs."""
+    monkeypatch.delenv("RPPM_DEVICE", raising=False)
+    process.state = ProcessState.RUNNING
+    addon = bpy.context.preferences.addons.new()
+    addon.module = "rppm_addon"
+    yield addon.preferences
+    bpy.context.preferences.addons.remove(addon)
+
+
+def found(*devices):
+    return SimpleNamespace(devices=list(devices))
+
+
+def test_each_machine_has_its_own(preferences, process, monkeypatch):
+    process.device = found(CARD, CHIP)
     monkeypatch.setattr(platform, "node", lambda: "farm")
-    preferences._choose_device(stored, 2)
+    preferences.device = CHIP.identity
     monkeypatch.setattr(platform, "node", lambda: "desk")
-    assert preferences._device_of(stored) == 0
-    preferences._choose_device(stored, 1)
-    assert chosen_device.device_here(stored.devices) == (CARD.identity, "A card")
+    assert preferences.device == "AUTOMATIC" and chosen_device() == ""
+    preferences.device = CARD.identity
+    assert chosen_device() == f"{CARD.identity}?A card"
     monkeypatch.setattr(platform, "node", lambda: "farm")
-    assert chosen_device.device_here(stored.devices) == (CHIP.identity, "A chip")
-    assert preferences._device_of(stored) == 2
-    preferences._choose_device(stored, 2)  # as Blender does when the same is chosen again
-    preferences._choose_device(stored, 0)
-    assert chosen_device.device_here(stored.devices) is None and len(stored.changes) == 3
+    assert chosen_device() == f"{CHIP.identity}?A chip" and preferences.device == CHIP.identity
+    preferences.device = CHIP.identity  # which changes nothing
+    preferences.device = "AUTOMATIC"
+    assert chosen_device() == "" and process.restarted == 3
     for nonsense in ("", "[1]", "{", '{"farm": "x"}', '{"farm": ["", "x"]}', '{"farm": [1, 2]}'):
-        assert chosen_device.device_here(nonsense) is None
+        preferences.devices = nonsense
+        assert chosen_device() == "", nonsense
 
 
-def test_the_menu_has_what_was_found_and_what_was_chosen(stored):
-    stored.devices = chosen_device.with_device_here("", chosen_device.ChosenDevice("10de:1@0000:01:00.0", "Old"))
-    assert [item[:2] for item in preferences._device_items(stored, None)] == [
-        ("AUTOMATIC", "Automatic"), ("10de:1@0000:01:00.0", "Old, not looked for yet"),
-    ]  # fmt: skip
+def test_the_menu_has_what_was_found_and_what_was_chosen(preferences, process):
+    old = dataclasses.replace(CARD, identity="10de:1@0000:01:00.0", name="Old")
+
+    def labels():
+        identities = ("AUTOMATIC", CARD.identity, CHIP.identity, old.identity)
+        return [bpy.types.UILayout.enum_item_name(preferences, "device", identity) for identity in identities]
+
+    process.device = found(old)
+    preferences.device = old.identity
+    process.device = None
+    assert labels() == ["Automatic", "", "", "Old, not looked for yet"]
     again = dataclasses.replace(CARD, number=2, name="The card, by another driver")
-    renderer_process._process.device = SimpleNamespace(devices=[CARD, CHIP, again])
-    labels = ("Automatic", "A card (discrete, 16.00 GiB, Mesa 25)", "A chip (integrated)", "Old, not there")
-    shown = [(item[3], item[1]) for item in preferences._device_items(stored, None)]
-    assert shown == list(enumerate(labels))
-    assert preferences._device_of(stored) == 3
+    process.device = found(CARD, CHIP, again)
+    assert labels() == ["Automatic", "A card (discrete, 16.00 GiB, Mesa 25)", "A chip (integrated)", "Old, not there"]
+    assert preferences.device == old.identity
 
 
-def test_the_environment_wins(scene, stored, monkeypatch):
-    devices = chosen_device.with_device_here("", chosen_device.ChosenDevice("software", "llvmpipe"))
-    here = SimpleNamespace(preferences=SimpleNamespace(devices=devices))
-    context = SimpleNamespace(preferences=SimpleNamespace(addons={chosen_device.root_package(): here}))
-    monkeypatch.setattr(chosen_device, "bpy", SimpleNamespace(context=context))
-    assert chosen_device.chosen_device() == "software?llvmpipe"
+def test_the_environment_wins(preferences, process, monkeypatch):
+    process.device = found(CARD)
+    preferences.device = CARD.identity
     monkeypatch.setenv("RPPM_DEVICE", "4")
-    assert chosen_device.chosen_device() == "4"
-    context.preferences.addons = {}
-    monkeypatch.delenv("RPPM_DEVICE")
-    assert chosen_device.chosen_device() == ""
-    assert bpy.context is not context
+    assert chosen_device() == "4"

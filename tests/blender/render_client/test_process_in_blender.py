@@ -9,77 +9,70 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
+from recorder import Recorder, record
 from support.baking import add_uv_map, bake
 from support.sent_members import watch_sent_members
 
 import rppm_addon
 from rppm_addon.blender.render_client import renderer_process, renderer_thread
 from rppm_addon.session.client.client import ProcessState
-from rppm_addon.session.render.observers import RenderObserver, observing
 from rppm_addon.session.transport.sessions import SessionKind
 
 
 @pytest.fixture
 def windowed(monkeypatch, tmp_path):
     """Renders go to the process, as where Blender has a window."""
-    monkeypatch.setattr(renderer_process, "_process", None)
-    monkeypatch.setattr(renderer_process, "log_path", lambda: tmp_path / "renderer.log")
+    process = renderer_process.renderer_process()
+    process.close()
+    monkeypatch.setattr(process.launcher, "log_path", tmp_path / "renderer.log")
     monkeypatch.setattr(renderer_process, "is_used", lambda: True)
-    yield renderer_process.renderer_process()
-    renderer_process.close()
+    yield process
+    process.close()
 
 
-class Observer(RenderObserver):
-    """Keeps the frames, and runs something at the first progress."""
+@pytest.fixture
+def expected_of(monkeypatch):
+    """What a function returns where renders go to the thread, as without a window, which has no renderer after it."""
 
-    snapshots = (0.0,)
+    def expected_of(function, *arguments, **given):
+        with monkeypatch.context() as patched:
+            patched.setattr(renderer_process, "is_used", lambda: False)
+            expected = function(*arguments, **given)
+        renderer_thread.release()
+        monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("the process was to render"))
+        return expected
 
-    def __init__(self, at_first=None):
-        self.frames, self.iterations, self.errors, self.at_first = [], [], [], at_first
+    return expected_of
+
+
+class Killer(Recorder):
+    """Kills the process of this one's children after the first iteration."""
 
     def on_progress(self, progress):
-        if progress.iteration == 1 and self.at_first is not None:
-            self.at_first()
-        self.iterations.append(progress.iteration)
-
-    def on_snapshot(self, seconds, frame, scene):
-        self.frames.append(frame)
-
-    def on_finish(self, result, scene):
-        self.frames.append(result.frame)
-
-    def on_error(self, text):
-        self.errors.append(text)
+        super().on_progress(progress)
+        if progress.iteration == 1:
+            task = Path(f"/proc/{os.getpid()}/task")
+            for child in {int(pid) for thread in task.iterdir() for pid in (thread / "children").read_text().split()}:
+                os.kill(child, signal.SIGKILL)
 
 
-def rendered(at_first=None):
-    observer = Observer(at_first)
-    with observing(observer):
-        bpy.ops.render.render()
-    return observer
-
-
-def test_the_process_renders_what_the_thread_does(lit, windowed, monkeypatch):
+def test_the_process_renders_what_the_thread_does(lit, windowed, expected_of):
     lit.view_layers[0].use_pass_z = lit.view_layers[0].use_pass_normal = True
-    with monkeypatch.context() as patched:
-        patched.setattr(renderer_process, "is_used", lambda: False)
-        expected = rendered()
-    renderer_thread.release()
-    monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("the process was to render"))
+    expected = expected_of(record, Recorder(snapshots=(0.0,)))
     for _ in range(2):
-        observer = rendered()
+        recorder = record(Recorder(snapshots=(0.0,)))
         assert windowed.state is ProcessState.RUNNING and not windowed.sessions
-        assert observer.iterations == expected.iterations == [0, 1, 2]
-        for before, after in zip(expected.frames, observer.frames, strict=True):
+        assert recorder.iterations == expected.iterations == [0, 1, 2]
+        for before, after in zip(expected.frames, recorder.frames, strict=True):
             np.testing.assert_array_equal(before.combined, after.combined)
             assert before.passes and list(before.passes) == list(after.passes)
             for name, values in before.passes.items():
                 np.testing.assert_array_equal(values, after.passes[name])
-    assert rendered().frames[-1].combined[16, 16, 0] == pytest.approx(1.0, rel=1e-3)
+    assert recorder.frames[-1].combined[16, 16, 0] == pytest.approx(1.0, rel=1e-3)
 
 
 @pytest.mark.parametrize("persistent", [False, True])
-def test_an_animation_sends_only_what_changes(lit, windowed, monkeypatch, tmp_path, persistent):
+def test_an_animation_sends_only_what_changes(lit, windowed, expected_of, monkeypatch, tmp_path, persistent):
     """And its frames are those of the thread, bit for bit."""
     lit.frame_start, lit.frame_end = 1, 3
     lit.render.filepath = str(tmp_path / "####")
@@ -88,17 +81,9 @@ def test_an_animation_sends_only_what_changes(lit, windowed, monkeypatch, tmp_pa
         lit.camera.keyframe_insert("location", frame=frame)
     sent = watch_sent_members(monkeypatch)
 
-    def frames():
-        observer = Observer()
-        with observing(observer):
-            bpy.ops.render.render(animation=True)
-        return observer.frames
-
-    with monkeypatch.context() as patched:
-        patched.setattr(renderer_process, "is_used", lambda: False)
-        expected = frames()
+    expected = expected_of(record, animation=True).frames
     lit.render.use_persistent_data = persistent
-    found = frames()
+    found = record(animation=True).frames
     assert [frame.combined.tobytes() for frame in found] == [frame.combined.tobytes() for frame in expected]
     assert len({session for session, _ in sent}) == 1
     first, *others = sent.values()
@@ -109,13 +94,9 @@ def test_an_animation_sends_only_what_changes(lit, windowed, monkeypatch, tmp_pa
     assert not windowed.sessions
 
 
-def test_the_process_bakes_what_the_thread_does(lit, windowed, monkeypatch):
+def test_the_process_bakes_what_the_thread_does(lit, windowed, expected_of):
     add_uv_map(lit.objects["Quad"])
-    with monkeypatch.context() as patched:
-        patched.setattr(renderer_process, "is_used", lambda: False)
-        expected = bake(lit.objects["Quad"], type="COMBINED")
-    renderer_thread.release()
-    monkeypatch.setattr(renderer_thread, "render", lambda *_: pytest.fail("the process was to render"))
+    expected = expected_of(bake, lit.objects["Quad"], type="COMBINED")
     np.testing.assert_array_equal(bake(lit.objects["Quad"], type="COMBINED"), expected)
     assert expected.any() and windowed.state is ProcessState.RUNNING
     for handler in bpy.app.handlers.object_bake_complete:  # which Blender calls where it bakes in a job
@@ -125,21 +106,15 @@ def test_the_process_bakes_what_the_thread_does(lit, windowed, monkeypatch):
 
 def test_errors_reach_the_user(lit, windowed):
     """A process that dies with a scene again and again is an error that names its log."""
-
-    def kill():
-        task = Path(f"/proc/{os.getpid()}/task")
-        for child in {int(pid) for thread in task.iterdir() for pid in (thread / "children").read_text().split()}:
-            os.kill(child, signal.SIGKILL)
-
     lit.rppm.samples = 1000
-    observer = Observer(kill)
-    with observing(observer), pytest.raises(RuntimeError, match="SIGKILL"):
-        bpy.ops.render.render()
-    assert len(observer.errors) == 1 and str(windowed.log_path) in observer.errors[0]
+    killer = Killer()
+    with pytest.raises(RuntimeError, match="SIGKILL"):
+        record(killer)
+    assert len(killer.errors) == 1 and str(windowed.log_path) in killer.errors[0]
     assert windowed.state is ProcessState.FAILED and windowed.restarts == 2
     windowed.restart()
     lit.rppm.samples = 2
-    assert rendered().frames
+    assert record().frames
 
 
 def test_the_process_ends_with_the_file_and_with_the_extension(windowed):
@@ -152,7 +127,6 @@ def test_the_process_ends_with_the_file_and_with_the_extension(windowed):
     rppm_addon.unregister()
     try:
         assert windowed.state is ProcessState.STOPPED
-        assert renderer_process._on_load not in bpy.app.handlers.load_post
     finally:
         rppm_addon.register()
 

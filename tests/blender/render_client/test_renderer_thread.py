@@ -3,11 +3,11 @@
 
 import threading
 
-import numpy as np
 import pytest
+from blender_scenes import CAMERA
 
 from rppm_addon.blender.render_client.renderer_thread import RendererThread, RenderJob
-from rppm_addon.scene import Camera, Scene
+from rppm_addon.scene import Scene
 from rppm_addon.session.render import renderer as session_renderer
 from rppm_addon.session.render.results import Progress
 
@@ -45,7 +45,7 @@ def renderers(monkeypatch):
     owner.release()
 
 
-SCENE = Scene(Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 4, 4))
+SCENE = Scene(CAMERA)
 
 
 class Job(RenderJob):

@@ -3,7 +3,7 @@
 
 import bpy
 import numpy as np
-from blender_scenes import add_mesh, add_node, export, link, new_material, to_surface
+from blender_scenes import add_mesh, add_node, depsgraph, export, surface
 
 from rppm_addon.blender.export.images.texture_limit import limited
 from rppm_addon.blender.export.updates.sync import SceneSync
@@ -30,22 +30,15 @@ def test_small_images_stay_as_they_are():
     assert limited(image, 8) is image
 
 
-def test_renders_and_viewports_have_limits_of_their_own(scene):
-    material = new_material("Shown")
-    emission, texture = (
-        add_node(material.node_tree, "ShaderNodeEmission"),
-        add_node(material.node_tree, "ShaderNodeTexImage"),
-    )
-    texture.image = bpy.data.images.new("image", 300, 300)
-    link(material.node_tree, texture.outputs["Color"], emission.inputs["Color"])
-    to_surface(material, emission)
-    add_mesh(scene).data.materials.append(material)
+def test_renders_and_viewports_have_limits_of_their_own(scene, material, tree):
+    texture = add_node(tree, "ShaderNodeTexImage", image=bpy.data.images.new("image", 300, 300))
+    surface("ShaderNodeEmission", material=material, Color=texture.outputs["Color"])
+    add_mesh(scene, material=material)
     sync, camera = SceneSync(), export(scene).camera
 
     def sides():
         scene.view_layers[0].update()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        return [made.images[0].pixels.shape[0] for made in (export(scene), sync.update(depsgraph, camera))]
+        return [made.images[0].pixels.shape[0] for made in (export(scene), sync.update(depsgraph(), camera))]
 
     assert sides() == [300, 300]
     scene.cycles.texture_limit_render, scene.cycles.texture_limit = "256", "128"

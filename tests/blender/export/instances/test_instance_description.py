@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Descriptions of instances, and what is made of them."""
 
-import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_object, export, new_material
+from blender_scenes import add_mesh, collect, export, new_material, show_collection
 
 from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.instances.instance_description import InstanceDescription, Instancer
@@ -16,35 +15,19 @@ CAMERA, SHADOW = RayVisibility.CAMERA, RayVisibility.SHADOW
 
 def description(**members) -> InstanceDescription:
     values = {
-        "mesh": 3,
-        "materials": [1, 2],
-        "object_name": "Leaf",
-        "object_index": 7,
-        "color": (0.1, 0.2, 0.3, 0.4),
-        "random": 0.75,
-        "visibility": RayVisibility.ALL,
-        "holdout": True,
-        "shadow_catcher": False,
-        "attributes": {"OBJECT:heat": (0.5,)},
-        "light_group": "",
-        "linking": LightLinking(1, 2, 3, 4),
-        "terminator_geometry_offset": 0.25,
-        "terminator_shading_offset": 0.5,
-    }
+        "mesh": 3, "materials": [1, 2], "object_name": "Leaf", "object_index": 7, "color": (0.1, 0.2, 0.3, 0.4),
+        "random": 0.75, "visibility": RayVisibility.ALL, "holdout": True, "shadow_catcher": False,
+        "attributes": {"OBJECT:heat": (0.5,)}, "light_group": "", "linking": LightLinking(1, 2, 3, 4),
+        "terminator_geometry_offset": 0.25, "terminator_shading_offset": 0.5,
+    }  # fmt: skip
     return InstanceDescription(**values | members)
 
 
 def instancer(**members) -> Instancer:
     values = {
-        "uid": 5,
-        "visibility": RayVisibility.ALL,
-        "layer_visibility": RayVisibility.ALL,
-        "holdout": False,
-        "shadow_catcher": False,
-        "light_group": "",
-        "linking": None,
-        "has_particles": False,
-    }
+        "uid": 5, "visibility": RayVisibility.ALL, "layer_visibility": RayVisibility.ALL, "holdout": False,
+        "shadow_catcher": False, "light_group": "", "linking": None, "has_particles": False,
+    }  # fmt: skip
     return Instancer(**values | members)
 
 
@@ -99,15 +82,10 @@ def test_instances_of_a_mesh_share_what_was_read_once(scene):
 
 
 def test_each_of_two_instancers_of_one_mesh_passes_on_its_own(scene):
-    leaf = add_mesh(scene, "Leaf")
-    leaf.data.materials.append(new_material("Green"))
-    leaf.color = (0.5, 0.25, 0.125, 1.0)
-    collection = bpy.data.collections.new("Leaves")
-    collection.objects.link(leaf)
-    scene.collection.objects.unlink(leaf)
+    leaf = add_mesh(scene, "Leaf", material=new_material("Green"), color=(0.5, 0.25, 0.125, 1.0))
+    collection = collect(scene, leaf)
     for number in range(6):
-        empty = add_object(scene, f"Empty{number}", None, location=(0.0, 0.0, float(number)))
-        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        empty = show_collection(scene, collection, location=(0.0, 0.0, float(number)))
         empty.is_holdout, empty.is_shadow_catcher = number % 2 == 1, number == 2
         empty.visible_glossy = number != 4
     exported = export(scene)
