@@ -31,7 +31,7 @@ def scene(registered):
 @pytest.fixture
 def material(scene):
     """A material whose tree has an output node and nothing else; its name is Material."""
-    from blender_scenes import new_material
+    from node_trees import new_material
 
     return new_material()
 
@@ -80,7 +80,8 @@ def process(scene, monkeypatch, tmp_path):
 @pytest.fixture
 def lit(scene):
     """A white quad that fills the middle of the picture, under a sun: its radiance is 1 there."""
-    from blender_scenes import add_light, add_mesh, new_material, set_world, surface
+    from blender_scenes import add_light, add_mesh, set_world
+    from node_trees import new_material, surface
 
     white, _ = surface("ShaderNodeBsdfDiffuse", material=new_material("White"), Color=(1.0, 1.0, 1.0, 1.0))
     add_mesh(scene, "Quad", material=white)

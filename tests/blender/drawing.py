@@ -106,7 +106,7 @@ def drawn(cls, context):
 
 
 def identifiers(record):
-    """Of the operators that buttons of a record call."""
+    """Names of the operators that buttons of a record call."""
     return [button._identifier for button in record.operators]
 
 

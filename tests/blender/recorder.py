@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What observers are told of renders."""
+"""An observer that keeps all that it is told of renders."""
 
 import bpy
 
@@ -42,7 +42,7 @@ class Recorder(RenderObserver):
 
 
 def record(recorder=None, **arguments):
-    """What a render by Blender's operator, with its arguments, tells a recorder."""
+    """Render by Blender's operator, with its arguments; returns the recorder of the render."""
     recorder = recorder or Recorder()
     with observing(recorder):
         bpy.ops.render.render(**arguments)

@@ -10,22 +10,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from blender_scenes import (
-    add_light,
-    add_mesh,
-    add_node,
-    add_object,
-    collect,
-    geometry_nodes,
-    link,
-    new_image,
-    new_material,
-    node_group,
-    save_png,
-    set_world,
-    show_collection,
-    surface,
-)
+from blender_scenes import add_light, add_mesh, add_object, collect, new_image, save_png, set_world, show_collection
+from node_trees import add_node, geometry_nodes, link, new_material, node_group, surface
 
 FRAMES = range(1, 5)
 

@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, new_material, surface
+from blender_scenes import add_light, add_mesh
 from engine_calls import Proxy
+from node_trees import new_material, surface
 from support.baking import add_uv_map, aim_at, bake, select
 
 from rppm_addon.blender.engine import baking

@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, new_material, set_world, surface
+from blender_scenes import add_mesh, set_world
 from exr import read_layers, write_exr
+from node_trees import add_node, new_material, surface
 
 from rppm_addon.scene.cryptomatte import identifiers_of
 from rppm_addon.scene.passes import NOISY_IMAGE, PASSES

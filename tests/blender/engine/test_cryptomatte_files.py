@@ -6,8 +6,9 @@ import json
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, export, node_group
+from blender_scenes import add_mesh, export
 from exr import read_channels, write_exr
+from node_trees import add_node, node_group
 
 from rppm_addon.scene.cryptomatte import hash_of, identifiers_of
 

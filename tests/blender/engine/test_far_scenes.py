@@ -4,7 +4,8 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, export, geometry_nodes, set_world, surface
+from blender_scenes import add_light, add_mesh, export, set_world
+from node_trees import geometry_nodes, surface
 
 
 def glass_on_a_floor(scene) -> None:

@@ -7,13 +7,13 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_mesh, add_node, add_object, export, new_material, surface
+from blender_scenes import add_mesh, add_object, export
+from node_trees import add_node, new_material, surface
 
 from rppm_addon.blender.export.images import images
 from rppm_addon.blender.render_client import renderer_process
 from rppm_addon.session.client.client import ProcessState
 from rppm_addon.session.placeholders.known_programs import programs_of
-
 
 pytestmark = pytest.mark.usefixtures("timers")  # before a file is opened
 

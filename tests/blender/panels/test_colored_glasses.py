@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, add_node, constant, export, link, new_material
+from blender_scenes import add_mesh, export
 from drawing import context_of, drawn
+from node_trees import add_node, constant, link, new_material
 
 from rppm_addon.blender.colored_glasses import colored_glasses
 from rppm_addon.blender.panels.shading import RPPM_PT_material_settings

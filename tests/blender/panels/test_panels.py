@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_object, new_material, set_world
+from blender_scenes import add_light, add_mesh, add_object, set_world
 from drawing import RecordingLayout, context_of, drawn, drawn_panels, identifiers
+from node_trees import new_material
 
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.view_layer.settings import export_settings

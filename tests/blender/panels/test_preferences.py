@@ -99,6 +99,7 @@ def test_the_preferences_are_those_of_the_root_package(package):
     sys.modules[package] = module
     try:
         specification.loader.exec_module(module)
+        assert module.register.__module__ == module.unregister.__module__ == f"{package}.rppm_addon"
         loaded = importlib.import_module(f"{package}.rppm_addon.blender.preferences")
         assert loaded.RppmPreferences.bl_idname == package
     finally:

@@ -8,8 +8,9 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, surface
+from blender_scenes import add_light, add_mesh, export, set_world
 from drawing import context_of, drawn
+from node_trees import add_node, link, new_material, surface
 
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.view_layer.settings import export_settings

@@ -32,7 +32,7 @@ def windowed(monkeypatch, tmp_path):
 
 @pytest.fixture
 def expected_of(monkeypatch):
-    """What a function returns where renders go to the thread, as without a window, which has no renderer after it."""
+    """Call a function while renders go to the thread, as without a window; the thread has no renderer afterwards."""
 
     def expected_of(function, *arguments, **given):
         with monkeypatch.context() as patched:

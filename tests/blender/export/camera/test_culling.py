@@ -2,7 +2,8 @@
 """Culling of Simplify."""
 
 import pytest
-from blender_scenes import add_mesh, depsgraph, export, multiply_cubes
+from blender_scenes import add_mesh, depsgraph, export
+from node_trees import multiply_cubes
 
 from rppm_addon.blender.export.updates.sync import SceneSync
 

@@ -4,19 +4,8 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    CAMERA,
-    add_mesh,
-    add_node,
-    add_object,
-    depsgraph,
-    export,
-    following,
-    geometry_nodes,
-    multiply_cubes,
-    new_material,
-    surface,
-)
+from blender_scenes import CAMERA, add_mesh, add_object, depsgraph, export, following
+from node_trees import add_node, geometry_nodes, multiply_cubes, new_material, surface
 from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export.common.hashing import hashed, hashed_up_to

@@ -6,21 +6,9 @@ import os
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_mesh,
-    add_node,
-    added,
-    export,
-    export_graph,
-    link,
-    new_image,
-    save_png,
-    shaders,
-    source,
-    surface,
-    to_surface,
-)
+from blender_scenes import add_mesh, export, export_graph, new_image, save_png
 from cycles_light import cycles_radiance
+from node_trees import add_node, added, link, shaders, source, surface, to_surface
 
 from rppm_addon.blender.export.images import kept_images
 from rppm_addon.blender.export.images.color_spaces import scene_linear
@@ -152,20 +140,16 @@ def test_a_file_that_is_no_picture(scene, tmp_path):
     assert "damaged.png" in text and "cannot read" in text and "save it anew" in text and "missing" not in text.lower()
 
 
-def test_missing_file(scene, tmp_path):
-    image = new_image("Lost", PIXELS)
-    image.source = "FILE"
-    image.filepath = str(tmp_path / "nowhere.png")
+@pytest.mark.parametrize("has_image", [False, True])
+def test_missing_images_are_named(scene, tmp_path, has_image):
+    image = new_image("Lost", PIXELS) if has_image else None
+    if has_image:
+        image.source, image.filepath = "FILE", str(tmp_path / "nowhere.png")
     graph, warnings = export_graph(scene, textured(image))
     ((shader, _),) = shaders(graph)
     assert source(graph, shader, "color").image == MISSING
-    assert any('"Material"' in text and '"Lost"' in text and "nowhere.png" in text for text in warnings)
-
-
-def test_texture_without_an_image(scene):
-    graph, warnings = export_graph(scene, textured(None))
-    ((shader, _),) = shaders(graph)
-    assert source(graph, shader, "color").image == MISSING and any('"Picture"' in text for text in warnings)
+    named = ('"Material"', '"Lost"', "nowhere.png") if has_image else ('"Picture"',)
+    assert any(all(name in text for name in named) for text in warnings)
 
 
 def test_placement_by_a_mapping(scene):

@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from blender_scenes import add_mesh, add_node, depsgraph, export, surface
+from blender_scenes import add_mesh, depsgraph, export
+from node_trees import add_node, surface
 
 from rppm_addon.blender.export.images.texture_limit import limited
 from rppm_addon.blender.export.updates.sync import SceneSync

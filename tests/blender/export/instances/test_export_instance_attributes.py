@@ -4,20 +4,8 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    CAMERA,
-    add_light,
-    add_mesh,
-    add_node,
-    collect,
-    export,
-    following,
-    link,
-    new_material,
-    node_group,
-    show_collection,
-    surface,
-)
+from blender_scenes import CAMERA, add_light, add_mesh, collect, export, following, show_collection
+from node_trees import add_node, link, new_material, node_group, surface
 
 from rppm_addon.blender.export import SceneSync
 

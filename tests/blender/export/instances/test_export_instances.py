@@ -4,20 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_light,
-    add_mesh,
-    add_node,
-    add_object,
-    collect,
-    export,
-    new_material,
-    node_group,
-    shaders,
-    show_collection,
-    surface,
-)
+from blender_scenes import add_light, add_mesh, add_object, collect, export, show_collection
 from mathutils import Matrix
+from node_trees import add_node, new_material, node_group, shaders, surface
 
 from rppm_addon.scene import RayVisibility
 

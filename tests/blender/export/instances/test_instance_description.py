@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-from blender_scenes import add_mesh, collect, export, new_material, show_collection
+from blender_scenes import add_mesh, collect, export, show_collection
+from node_trees import new_material
 
 from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.instances.instance_description import InstanceDescription, Instancer

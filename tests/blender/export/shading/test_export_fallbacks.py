@@ -4,8 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_node, constant, export_graph, link, new_material, surface
-from fallbacks import OCHRE, single_shader
+from blender_scenes import export_graph
+from node_trees import add_node, constant, link, new_material, shader_nodes, surface
+from single_shaders import OCHRE, single_shader
 
 from rppm_addon.blender.export.shading.nodes.graphs import HANDLERS, kind_name, snake_case
 from rppm_addon.materials.compiler.compiler import compile_graph
@@ -16,16 +17,6 @@ NOT_RENDERED = {
     "VOLUME_COEFFICIENTS", "PRINCIPLED_VOLUME", "VOLUME_SCATTER", "CAMERA",
 }  # fmt: skip
 """Node types that a neutral value stands in for."""
-
-
-def shader_nodes(tree):
-    """A node of each type that Blender's shader editor offers, except outputs and groups."""
-    for name in sorted(dir(bpy.types)):
-        if name.startswith("ShaderNode") and not name.startswith(("ShaderNodeOutput", "ShaderNodeGroup")):
-            try:
-                yield tree.nodes.new(name)
-            except RuntimeError:
-                continue  # a base class
 
 
 @pytest.mark.skipif(bpy.app.version < (5, 0), reason="names are those of Blender 5.0")
@@ -103,8 +94,7 @@ def test_each_fallback_is_named(scene, node, options, inputs, standing_in):
 
 
 @pytest.mark.parametrize(
-    ("node", "name"),
-    [("ShaderNodeSubsurfaceScattering", "falloff"), ("ShaderNodeBsdfPrincipled", "subsurface_method")],
+    ("node", "name"), [("ShaderNodeSubsurfaceScattering", "falloff"), ("ShaderNodeBsdfPrincipled", "subsurface_method")]
 )
 def test_older_versions_random_walk_is_the_legacy_of_later_ones(scene, node, name):
     material, shader = surface(node)

@@ -8,17 +8,8 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import (
-    add_mesh,
-    add_node,
-    export,
-    export_graph,
-    link,
-    new_material,
-    node_group,
-    surface,
-    to_surface,
-)
+from blender_scenes import add_mesh, export, export_graph
+from node_trees import add_node, link, new_material, node_group, surface, to_surface
 
 from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext

@@ -6,20 +6,10 @@ import math
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_light,
-    add_mesh,
-    add_node,
-    collect,
-    depsgraph,
-    export,
-    link,
-    set_world,
-    show_collection,
-    surface,
-)
+from blender_scenes import add_light, add_mesh, collect, depsgraph, export, set_world, show_collection
 from cycles_light import cycles_radiance
 from emission import light_strength
+from node_trees import add_node, link, surface
 
 from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.materials.traits.emitted import light_variation

@@ -4,22 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_mesh,
-    add_node,
-    added,
-    constant,
-    export,
-    export_graph,
-    link,
-    mixed,
-    node_group,
-    shaders,
-    source,
-    surface,
-    to_surface,
-)
-from fallbacks import OCHRE, RED, single_shader
+from blender_scenes import add_mesh, export, export_graph
+from node_trees import add_node, added, constant, link, mixed, node_group, shaders, source, surface, to_surface
+from single_shaders import OCHRE, RED, single_shader
 
 from rppm_addon.blender.export.shading.nodes.graphs import snake_case
 from rppm_addon.materials.compiler.compiler import compile_graph
@@ -66,11 +53,6 @@ def test_principled(scene):
     for name, value in values.items():
         expected = value[:3] if isinstance(value, tuple) else value
         assert shader.inputs[snake_case(name)] == pytest.approx(expected), name
-
-
-def test_a_new_principled_node_has_no_warning(scene):
-    shader, warnings = single_shader(scene, surface("ShaderNodeBsdfPrincipled")[0])
-    assert shader.inputs["emission_strength"] == 0.0 and shader.inputs["alpha"] == 1.0 and warnings == []
 
 
 def test_the_abbe_number_is_that_of_the_panel(scene):

@@ -4,18 +4,9 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import (
-    add_mesh,
-    add_node,
-    added,
-    constant,
-    export,
-    export_graph,
-    link,
-    shaders,
-    surface,
-)
-from fallbacks import OCHRE, single_shader
+from blender_scenes import add_mesh, export, export_graph
+from node_trees import add_node, added, constant, link, shaders, surface
+from single_shaders import OCHRE, single_shader
 
 from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 

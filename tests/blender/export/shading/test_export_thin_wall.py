@@ -3,7 +3,7 @@
 missing."""
 
 import pytest
-from blender_scenes import add_node, constant, link, node_group
+from node_trees import add_node, constant, link, node_group
 
 from rppm_addon.blender.export.common.report import Report
 from rppm_addon.blender.export.context import ExportContext

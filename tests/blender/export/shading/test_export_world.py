@@ -4,25 +4,23 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_node, export, link, new_image, set_world
+from blender_scenes import export, new_image, set_world
 from cycles_light import cycles_radiance
 from emission import HEIGHT, look_up, world_map
 from mathutils import Euler, Vector
+from node_trees import add_node, link
 
 
-def test_no_world_is_black(scene):
+def test_no_world_and_no_output_are_black(scene):
     scene.world = None
+    assert not world_map(export(scene)).any()
+    set_world(scene).node_tree.nodes.clear()
     assert not world_map(export(scene)).any()
 
 
 def test_background(scene):
     set_world(scene, (0.5, 1.0, 0.25), 3.0)
     np.testing.assert_allclose(world_map(export(scene))[0, 0], (1.5, 3.0, 0.75))
-
-
-def test_world_without_output(scene):
-    set_world(scene).node_tree.nodes.clear()
-    assert not world_map(export(scene)).any()
 
 
 @pytest.mark.skipif(bpy.app.version >= (5, 0), reason="from 5.0 on a world always has nodes")

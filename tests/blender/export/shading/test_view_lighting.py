@@ -7,8 +7,9 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_node, export, link, set_world
+from blender_scenes import add_light, export, set_world
 from emission import HEIGHT, world_map
+from node_trees import add_node, link
 
 from rppm_addon.blender.engine import studio_lights
 from rppm_addon.blender.export.shading.lights.view_lighting import ViewLighting, blurred_panorama, relit, view_lighting

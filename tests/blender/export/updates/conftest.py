@@ -3,8 +3,9 @@
 
 import bpy
 import pytest
-from blender_scenes import CAMERA, add_light, add_object, depsgraph, following, with_nodes
+from blender_scenes import CAMERA, add_light, add_object, depsgraph, following
 from edits import add_box, in_object_mode
+from node_trees import with_nodes
 
 from rppm_addon.blender.export.updates.sync import SceneSync
 

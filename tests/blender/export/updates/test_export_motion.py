@@ -4,7 +4,8 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_object, collect, depsgraph, set_world, surface
+from blender_scenes import add_light, add_mesh, add_object, collect, depsgraph, set_world
+from node_trees import surface
 from support.moving import FRAME, animate, blur, taken_scene
 
 from rppm_addon.blender.export import SceneSync, export_scene

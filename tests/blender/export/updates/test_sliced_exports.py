@@ -7,8 +7,9 @@ import bpy
 import edits
 import numpy as np
 import pytest
-from blender_scenes import CAMERA, add_node, add_object, depsgraph, following, new_image
+from blender_scenes import CAMERA, add_object, depsgraph, following, new_image
 from edits import EDITS, do, fresh, same
+from node_trees import add_node
 
 from rppm_addon.blender.export.updates.sync import SceneSync
 from rppm_addon.scene.storage.sharing import equal

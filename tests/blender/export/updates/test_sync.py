@@ -8,8 +8,9 @@ import bpy
 import edits
 import numpy as np
 import pytest
-from blender_scenes import add_node, add_object, show_collection, with_nodes
+from blender_scenes import add_object, show_collection
 from edits import EDITS, do, fresh, same
+from node_trees import add_node, with_nodes
 
 
 @pytest.mark.parametrize("edit", [*EDITS, edits.displace, edits.subdivide_adaptively])

@@ -3,8 +3,9 @@
 
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, collect, depsgraph, export, new_material, set_world, show_collection
+from blender_scenes import add_light, add_mesh, collect, depsgraph, export, set_world, show_collection
 from emission import world_map
+from node_trees import new_material
 
 from rppm_addon.blender.export import SceneSync
 from rppm_addon.blender.export.camera.camera import export_camera

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What tests of materials compare."""
+"""Values and shaders that tests of materials compare."""
 
-from blender_scenes import export_graph, shaders
+from blender_scenes import export_graph
+from node_trees import shaders
 
 RED = (1.0, 0.0, 0.0, 1.0)
 OCHRE = (0.5, 0.25, 0.125, 1.0)
