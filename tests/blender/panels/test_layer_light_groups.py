@@ -3,12 +3,35 @@
 
 import bpy
 import numpy as np
-from blender_scenes import depsgraph
+import pytest
+from blender_scenes import depsgraph, export, set_world
 from drawing import context_of, drawn
 from exr import read_channels, write_exr
 
 from rppm_addon.blender.export import SceneSync
 from rppm_addon.blender.export.camera.camera import export_camera
+
+
+@pytest.fixture
+def grouped(lit):
+    """``lit`` with the groups key, of its lights, and world, of the world, and an object in a group that there is
+    not."""
+    for name in ("key", "world"):
+        lit.view_layers[0].lightgroups.add(name=name)
+    for member in lit.objects:
+        if member.type == "LIGHT":
+            member.lightgroup = "key"
+    set_world(lit, (0.5, 0.5, 0.5)).lightgroup = "world"
+    bpy.data.objects["Quad"].lightgroup = "nobody"
+    return lit
+
+
+def test_groups_are_exported(grouped):
+    scene = export(grouped)
+    assert scene.settings.light_groups == ("key", "world")
+    assert {light.light_group for light in scene.lights} == {"key"}
+    assert scene.world.light_group == "world"
+    assert [instance.light_group for instance in scene.instances] == ["nobody"]
 
 
 def test_a_scene_that_lives_on_follows_its_groups(grouped):
