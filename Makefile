@@ -28,8 +28,8 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 # Each of their tests compiles programs and renders next to nothing, which the system's older Mesa does in a third of
 # the time while nothing is cached.
 COMPILE_BOUND = tests/parity/features tests/parity/nodes \
-	tests/blender/export/test_bad_materials.py tests/blender/export/test_material_fuzz.py \
-	tests/blender/render/test_animation.py tests/blender/render/test_animations.py \
+	tests/blender/export/shading/test_bad_materials.py tests/blender/export/shading/test_material_fuzz.py \
+	tests/blender/engine/test_animation.py tests/blender/engine/test_animations.py \
 	tests/gl/materials/test_material_programs.py tests/gl/device/test_gl_layer.py \
 	tests/gl/surfaces/test_adjoint_bsdf.py tests/gl/surfaces/test_displacement.py tests/gl/surfaces/test_hair.py \
 	tests/gl/device_scene/test_large_buffers.py

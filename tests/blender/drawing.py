@@ -86,6 +86,12 @@ def context_of(scene, **members):
     )
 
 
+def preferences_context():
+    """A context of the Preferences editor."""
+    system = SimpleNamespace(ui_scale=1.0)  # 0 without a window
+    return SimpleNamespace(region=SimpleNamespace(width=500), preferences=SimpleNamespace(system=system))
+
+
 def drawn(cls, context):
     """Draw a panel (or preferences, or another class with draw) and return the record of what it shows."""
     panel = cls(bpy.data.scenes[0])  # an instance needs some RNA; which does not matter
@@ -97,6 +103,11 @@ def drawn(cls, context):
     for button in panel.layout.record.operators:
         assert set(vars(button)) - {"_identifier", "_names"} <= button._names, button
     return panel.layout.record
+
+
+def identifiers(record):
+    """Names of the operators that buttons of a record call."""
+    return [button._identifier for button in record.operators]
 
 
 def drawn_panels(classes, context):

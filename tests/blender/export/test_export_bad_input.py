@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_object, export
+from blender_scenes import add_light, add_mesh, add_object, depsgraph, export
 
 from rppm_addon.blender.export import ExportStopped, export_scene
 from rppm_addon.scene.errors import SettingsError
@@ -79,25 +79,22 @@ def test_the_export_can_be_stopped(scene):
         return len(asked) > 3
 
     with pytest.raises(ExportStopped):
-        export_scene(bpy.context.evaluated_depsgraph_get(), should_stop=should_stop)
+        export_scene(depsgraph(), should_stop=should_stop)
     assert len(asked) == 4
 
 
 @pytest.mark.parametrize("lost", ["file", "object"])
-def test_what_is_missing_of_linked_files_is_named(registered, tmp_path, lost):
+def test_what_is_missing_of_linked_files_is_named(scene, tmp_path, lost):
     library, main = tmp_path / "library.blend", tmp_path / "main.blend"
-    bpy.ops.wm.read_factory_settings(use_empty=True)
     chair, table = (bpy.data.objects.new(name, None) for name in ("Chair", "Table"))
     bpy.data.libraries.write(str(library), {chair, table})
     bpy.data.libraries.write(str(tmp_path / "other.blend"), {chair})
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    for member in (chair, table):
+        bpy.data.objects.remove(member)
     with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
         wanted.objects = ["Chair", "Table"]
     for linked in wanted.objects:
-        bpy.context.scene.collection.objects.link(linked)
-    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    bpy.context.scene.collection.objects.link(camera)
-    bpy.context.scene.camera = camera
+        scene.collection.objects.link(linked)
     bpy.ops.wm.save_as_mainfile(filepath=str(main))
     library.unlink()
     if lost == "object":

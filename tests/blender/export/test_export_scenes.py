@@ -33,22 +33,28 @@ EXPECTED = {
 }
 
 
-def open_file(path):
-    try:
-        bpy.ops.wm.open_mainfile(filepath=str(path))
-    except RuntimeError as error:
-        if bpy.app.version < (5, 0) and "not a blend file" in str(error):
-            pytest.skip("Blender 5 wrote this file in a way that this one cannot read")
-        raise
+@pytest.fixture
+def opened(registered):
+    """Opens a sample scene and exports it."""
+
+    def opened(name):
+        path = SCENES / f"{name}.blend"
+        if not path.exists():
+            pytest.skip(f"the sample scenes are not here ({SCENES})")
+        try:
+            bpy.ops.wm.open_mainfile(filepath=str(path))
+        except RuntimeError as error:
+            if bpy.app.version < (5, 0) and "not a blend file" in str(error):
+                pytest.skip("Blender 5 wrote this file in a way that this one cannot read")
+            raise
+        return export(bpy.context.scene)
+
+    return opened
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_export_of_a_real_file(registered, name):
-    path = SCENES / f"{name}.blend"
-    if not path.exists():
-        pytest.skip(f"the sample scenes are not here ({SCENES})")
-    open_file(path)
-    exported = export(bpy.context.scene)
+def test_export_of_a_real_file(opened, name):
+    exported = opened(name)
     found = (exported.triangle_count, len(exported.materials), len(exported.lights), len(exported.images))
     assert found == EXPECTED[name]
     for mesh in exported.meshes:
@@ -71,11 +77,7 @@ def test_export_of_a_real_file(registered, name):
         assert warning.split(" ")[0] in {"Material", "Object", "World", "Light", "Camera"}, warning
 
 
-def test_glass_of_the_caustic_scenes_is_glass(registered):
-    path = SCENES / "glass_caustics.blend"
-    if not path.exists():
-        pytest.skip(f"the sample scenes are not here ({SCENES})")
-    bpy.ops.wm.open_mainfile(filepath=str(path))
-    exported = export(bpy.context.scene)
+def test_glass_of_the_caustic_scenes_is_glass(opened):
+    exported = opened("glass_caustics")
     (glass,) = (material for material in exported.materials if material.name == "glass_accurate")
     assert {"bsdf_refraction", "bsdf_glossy", "fresnel"} <= {node.kind for node in glass.graph.nodes}

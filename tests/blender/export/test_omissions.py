@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_light, add_mesh, export
+from blender_scenes import add_light, add_mesh, depsgraph, export
 from rna_without_bearing import WITHOUT_BEARING
 
 import rppm_addon.blender
@@ -80,7 +80,7 @@ def test_previews_name_nothing(lit):
     subdivide(lit)
     lit.view_layers[0].update()
     engine = SimpleNamespace(is_preview=True, test_break=lambda: False, update_stats=lambda *_: None)
-    scene = export_scene(bpy.context.evaluated_depsgraph_get(), engine)
+    scene = export_scene(depsgraph(), engine)
     assert len(scene.lights) == 1 and not scene.warnings
 
 
@@ -108,13 +108,12 @@ def test_passes_that_are_on_for_cycles_only(lit):
 
 
 def test_a_viewport_follows_edits(lit):
-    sync, depsgraph = SceneSync(), bpy.context.evaluated_depsgraph_get()
-    camera = export(lit).camera
+    sync, camera = SceneSync(), export(lit).camera
     title = "Adaptive Subdivision"
 
     def told():
-        depsgraph.update()
-        return any(text.startswith(title) for text in sync.update(depsgraph, camera).warnings)
+        lit.view_layers[0].update()
+        return any(text.startswith(title) for text in sync.update(depsgraph(), camera).warnings)
 
     assert not told()
     subdivide_adaptively(the(lit, "MESH"))
@@ -125,13 +124,13 @@ def test_a_viewport_follows_edits(lit):
 
 def described_types():
     """By the names of WITHOUT_BEARING, the RNA of what users set."""
-    scene = bpy.context.scene
     found = {name: getattr(bpy.types, name).bl_rna for name in WITHOUT_BEARING if "." not in name}
-    world, light = bpy.data.worlds.new("World"), bpy.data.lights.new("Light", "AREA")
-    source, material = bpy.data.objects.new("Object", None), bpy.data.materials.new("Material")
-    layer = scene.view_layers[0]
-    owners = {"scene": scene, "world": world, "light": light, "object": source, "material": material}
-    owners["view_layer"] = layer
+    data, scene = bpy.data, bpy.context.scene
+    owners = {
+        "scene": scene, "view_layer": scene.view_layers[0], "world": data.worlds.new("World"),
+        "light": data.lights.new("Light", "AREA"), "object": data.objects.new("Object", None),
+        "material": data.materials.new("Material"),
+    }  # fmt: skip
     for name in WITHOUT_BEARING:
         if "." in name:
             owner, member = name.split(".")

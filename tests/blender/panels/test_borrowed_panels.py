@@ -11,74 +11,53 @@ from rppm_addon.blender.panels import borrowed
 NOT_RENDERED = "has no effect on RPPM's picture"
 OF_CYCLES = "is about how Cycles works"
 
+ALIKE = {
+    ("CYCLES_MATERIAL_PT_", "RPPM_PT_material_"): "displacement settings surface volume",
+    ("CYCLES_RENDER_PT_", "RPPM_PT_"): """
+        bake bake_influence bake_output bake_output_margin bake_selected_to_active curves film motion_blur
+        motion_blur_curve performance sampling sampling_viewport simplify simplify_culling simplify_render
+        simplify_viewport filter passes
+    """,
+    ("CYCLES_WORLD_PT_", "RPPM_PT_world_"): "preview ray_visibility surface",
+}
+"""Endings of the names of panels of Cycles that have the same endings here, by both beginnings."""
 COUNTERPARTS = {
-    # data
     "CYCLES_CAMERA_PT_dof": "DATA_PT_camera_dof",
     "CYCLES_CAMERA_PT_dof_aperture": "DATA_PT_camera_dof_aperture",
     "CYCLES_LIGHT_PT_beam_shape": "RPPM_PT_light_beam",
     "CYCLES_LIGHT_PT_light": "RPPM_PT_light",
     "CYCLES_LIGHT_PT_nodes": "RPPM_PT_light_nodes",
     "CYCLES_LIGHT_PT_preview": "DATA_PT_preview",
-    # material
-    "CYCLES_MATERIAL_PT_displacement": "RPPM_PT_material_displacement",
     "CYCLES_MATERIAL_PT_preview": "MATERIAL_PT_preview",
-    "CYCLES_MATERIAL_PT_settings": "RPPM_PT_material_settings",
     "CYCLES_MATERIAL_PT_settings_surface": "RPPM_PT_material_settings",
-    "CYCLES_MATERIAL_PT_surface": "RPPM_PT_material_surface",
-    "CYCLES_MATERIAL_PT_volume": "RPPM_PT_material_volume",
     "CYCLES_PT_context_material": "EEVEE_MATERIAL_PT_context_material",
-    # object
     "CYCLES_OBJECT_PT_visibility_culling": "RPPM_PT_object_culling",
     "CYCLES_OBJECT_PT_lightgroup": "RPPM_PT_object_light_group",
     "CYCLES_OBJECT_PT_motion_blur": "RPPM_PT_object_motion_blur",
     "CYCLES_OBJECT_PT_visibility": "OBJECT_PT_visibility",
     "CYCLES_OBJECT_PT_visibility_ray_visibility": "RPPM_PT_ray_visibility",
-    # render
     "CYCLES_PT_integrator_presets": "RPPM_PT_presets",
     "CYCLES_PT_performance_presets": "RPPM_PT_presets",
     "CYCLES_PT_sampling_presets": "RPPM_PT_presets",
     "CYCLES_PT_viewport_sampling_presets": "RPPM_PT_presets",
-    "CYCLES_RENDER_PT_bake": "RPPM_PT_bake",
-    "CYCLES_RENDER_PT_bake_influence": "RPPM_PT_bake_influence",
-    "CYCLES_RENDER_PT_bake_output": "RPPM_PT_bake_output",
-    "CYCLES_RENDER_PT_bake_output_margin": "RPPM_PT_bake_output_margin",
-    "CYCLES_RENDER_PT_bake_selected_to_active": "RPPM_PT_bake_selected_to_active",
-    "CYCLES_RENDER_PT_curves": "RPPM_PT_curves",
-    "CYCLES_RENDER_PT_film": "RPPM_PT_film",
     "CYCLES_RENDER_PT_film_pixel_filter": "RPPM_PT_film",
     "CYCLES_RENDER_PT_film_transparency": "RPPM_PT_film",
     "CYCLES_RENDER_PT_light_paths": "RPPM_PT_paths",
     "CYCLES_RENDER_PT_light_paths_max_bounces": "RPPM_PT_paths",
-    "CYCLES_RENDER_PT_motion_blur": "RPPM_PT_motion_blur",
-    "CYCLES_RENDER_PT_motion_blur_curve": "RPPM_PT_motion_blur_curve",
-    "CYCLES_RENDER_PT_performance": "RPPM_PT_performance",
     "CYCLES_RENDER_PT_performance_acceleration_structure": "RPPM_PT_acceleration_structure",
     "CYCLES_RENDER_PT_performance_memory": "RPPM_PT_performance",
-    "CYCLES_RENDER_PT_sampling": "RPPM_PT_sampling",
     "CYCLES_RENDER_PT_sampling_advanced": "RPPM_PT_advanced",
     "CYCLES_RENDER_PT_sampling_lights": "RPPM_PT_photon_allocation",
     "CYCLES_RENDER_PT_sampling_render": "RPPM_PT_sampling_final",
-    "CYCLES_RENDER_PT_sampling_viewport": "RPPM_PT_sampling_viewport",
-    "CYCLES_RENDER_PT_simplify": "RPPM_PT_simplify",
-    "CYCLES_RENDER_PT_simplify_culling": "RPPM_PT_simplify_culling",
-    "CYCLES_RENDER_PT_simplify_render": "RPPM_PT_simplify_render",
-    "CYCLES_RENDER_PT_simplify_viewport": "RPPM_PT_simplify_viewport",
     "CYCLES_VIEW3D_PT_simplify_greasepencil": "RPPM_PT_simplify_greasepencil",
-    # output and view layer
     "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
-    "CYCLES_RENDER_PT_filter": "RPPM_PT_filter",
-    "CYCLES_RENDER_PT_passes": "RPPM_PT_passes",
     "CYCLES_RENDER_PT_passes_lightgroups": "RPPM_PT_passes_light_groups",
     "VIEWLAYER_PT_layer_passes_lightgroups": "RPPM_PT_passes_light_groups",
     "CYCLES_RENDER_PT_passes_data": "RPPM_PT_passes",
-    # world
-    "CYCLES_WORLD_PT_preview": "RPPM_PT_world_preview",
-    "CYCLES_WORLD_PT_ray_visibility": "RPPM_PT_world_ray_visibility",
-    # object
     "OBJECT_PT_shadow_terminator": "RPPM_PT_shadow_terminator",
-    "CYCLES_WORLD_PT_surface": "RPPM_PT_world_surface",
 }
 """Panels of Cycles, and those that stand in their place."""
+COUNTERPARTS |= {theirs + name: ours + name for (theirs, ours), names in ALIKE.items() for name in names.split()}
 
 EXCLUDED = {
     "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
@@ -162,7 +141,8 @@ def test_the_lists_name_nothing_that_is_not_there(scene):
 @pytest.mark.parametrize(
     ("tab", "names"),
     {
-        "camera": {"DATA_PT_lens", "DATA_PT_camera", "DATA_PT_camera_dof", "DATA_PT_camera_safe_areas",
+        "camera": {"DATA_PT_lens", "DATA_PT_camera", "DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture",
+                   "DATA_PT_camera_safe_areas",
                    "DATA_PT_camera_background_image", "DATA_PT_camera_display"},
         "object": {"OBJECT_PT_visibility", "OBJECT_PT_shading"},
         "particle": {"PARTICLE_PT_render_object", "PARTICLE_PT_render_collection", "PARTICLE_PT_emission"},
@@ -172,11 +152,13 @@ def test_the_lists_name_nothing_that_is_not_there(scene):
         "render": {"RENDER_PT_color_management", "RENDER_PT_gpencil"},
         "mesh": {"DATA_PT_uv_texture", "DATA_PT_vertex_colors", "DATA_PT_customdata", "DATA_PT_mesh_attributes"},
         "world": {"WORLD_PT_context_world"},
+        "light and material": {"DATA_PT_context_light", "EEVEE_MATERIAL_PT_context_material"},
         "view_layer": {"VIEWLAYER_PT_layer"},
     }.items(),
 )  # fmt: skip
 def test_tabs_have_what_users_look_for(scene, tab, names):
     assert names <= shown("RPPM")
+    assert not shown("RPPM") & {"DATA_PT_light", "RENDER_PT_eevee_sampling", "RENDER_PT_freestyle"}
 
 
 def test_panels_without_a_place_do_not_show(scene):

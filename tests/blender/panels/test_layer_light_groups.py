@@ -3,10 +3,10 @@
 
 import bpy
 import numpy as np
-import OpenEXR
 import pytest
-from blender_scenes import add_mesh, add_object, export, set_world
+from blender_scenes import depsgraph, export, set_world
 from drawing import context_of, drawn
+from exr import read_channels, write_exr
 
 from rppm_addon.blender.export import SceneSync
 from rppm_addon.blender.export.camera.camera import export_camera
@@ -34,24 +34,12 @@ def test_groups_are_exported(grouped):
     assert [instance.light_group for instance in scene.instances] == ["nobody"]
 
 
-def test_instances_have_the_group_of_their_object(grouped):
-    source = bpy.data.collections.new("Source")
-    inner = add_mesh(grouped, "Inner", lightgroup="key")
-    grouped.collection.objects.unlink(inner)
-    source.objects.link(inner)
-    empty = add_object(grouped, "Empty", None)
-    empty.instance_type, empty.instance_collection = "COLLECTION", source
-    groups = {instance.object_name: instance.light_group for instance in export(grouped).instances}
-    assert groups == {"Quad": "nobody", "Inner": "key"}
-
-
 def test_a_scene_that_lives_on_follows_its_groups(grouped):
     """Blender tells nothing of changes of light groups."""
     sync = SceneSync(viewport=False)
 
     def follow():
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        return sync.update(depsgraph, export_camera(grouped, depsgraph))
+        return sync.update(depsgraph(), export_camera(grouped, depsgraph()))
 
     assert {light.light_group for light in follow().lights} == {"key"}
     next(member for member in grouped.objects if member.type == "LIGHT").lightgroup = "world"
@@ -61,14 +49,9 @@ def test_a_scene_that_lives_on_follows_its_groups(grouped):
 
 
 def test_files_have_the_passes(grouped, tmp_path):
-    settings = grouped.render.image_settings
-    if hasattr(settings, "media_type"):
-        settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
-    grouped.render.filepath = str(tmp_path / "picture.exr")
+    write_exr(grouped, tmp_path / "picture.exr")
     bpy.ops.render.render(write_still=True)
-    with OpenEXR.File(grouped.render.filepath, separate_channels=True) as file:
-        planes = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    planes, _ = read_channels(tmp_path / "picture.exr")
     for channel in "RGB":
         key, world = (planes[f"ViewLayer.Combined_{group}.{channel}"] for group in ("key", "world"))
         np.testing.assert_allclose(key + world, planes[f"ViewLayer.Combined.{channel}"], rtol=1e-5, atol=1e-6)

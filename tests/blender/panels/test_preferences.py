@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from drawing import drawn
+from drawing import drawn, identifiers, preferences_context
 
 from rppm_addon.blender import operators, preferences
 from rppm_addon.blender.preferences import RppmPreferences
@@ -20,84 +20,54 @@ from rppm_addon.session.client.client import ProcessState
 ROOT = Path(__file__).resolve().parents[3]
 
 
-class Process:
-    """Stands in for the renderer process."""
-
-    def __init__(self, log_path):
-        self.state, self.error, self.device, self.log_path = ProcessState.STOPPED, "", None, log_path
-        self.restarted, self.is_listing = 0, False
-
-    def restart(self, lists_devices=False):
-        self.restarted += 1
-        self.state, self.error = ProcessState.STARTING, ""
-
-    def close(self):
-        self.state = ProcessState.STOPPED
+def shown():
+    return drawn(RppmPreferences, preferences_context())
 
 
-@pytest.fixture
-def process(tmp_path, monkeypatch):
-    process = Process(tmp_path / "renderer.log")
-    monkeypatch.setattr(renderer_process, "_process", process)
-    return process
-
-
-@pytest.fixture
-def context():
-    return SimpleNamespace(
-        region=SimpleNamespace(width=500), preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
-    )
-
-
-def identifiers(record):
-    return [button._identifier for button in record.operators]
-
-
-def test_before_the_renderer_was_needed(scene, process, context):
-    record = drawn(RppmPreferences, context)
+def test_before_the_renderer_was_needed(process):
+    record = shown()
     assert record.labels[0] == "The renderer has not been needed yet"
     assert identifiers(record) == ["rppm.start_renderer", "rppm.open_log", "rppm.self_test"]
     assert str(process.log_path) in record.labels[-2] and process.restarted == 0
 
 
-def test_the_device_that_was_found(scene, process, context, monkeypatch):
+def test_the_device_that_was_found(process, monkeypatch):
     monkeypatch.setenv("RPPM_DEVICE", "1")
     limits = {"GL_MAX_SHADER_STORAGE_BLOCK_SIZE": 1 << 27, "GL_MAX_TEXTURE_SIZE": 16384, "GL_OTHER": 3}
     process.state = ProcessState.RUNNING
     process.device = DeviceInformation("Some GPU", "Some driver 1.0", "4.6", limits, ["float atomics"])
-    labels = drawn(RppmPreferences, context).labels
+    labels = shown().labels
     assert {"Some GPU", "Some driver 1.0", "4.6", "128.0 MiB", "16,384", "float atomics"} <= set(labels)
     process.device.warnings.append("My card is not there")
-    assert "My card is not there" in drawn(RppmPreferences, context).labels
+    assert "My card is not there" in shown().labels
     assert "1, by the environment variable RPPM_DEVICE or --rppm-device" in labels
 
 
-def test_why_the_renderer_does_not_run(scene, process, context):
+def test_why_the_renderer_does_not_run(timers, process):
     process.state, process.error = ProcessState.FAILED, "The renderer process ended with code 1"
-    record = drawn(RppmPreferences, context)
+    record = shown()
     assert record.labels[:2] == ["The renderer does not run", process.error]
     assert bpy.ops.rppm.start_renderer() == {"FINISHED"} and process.restarted == 1
-    assert "The renderer is starting" in drawn(RppmPreferences, context).labels
-    assert bpy.app.timers.is_registered(operators._show_start)
-    assert operators._show_start() == operators.START_SHOWN_EVERY
+    assert "The renderer is starting" in shown().labels
+    *_, redraw = timers  # until the process has started and has listed the devices
+    assert redraw() == operators.START_SHOWN_EVERY
     process.state, process.is_listing = ProcessState.RUNNING, True
-    assert operators._show_start() == operators.START_SHOWN_EVERY
+    assert redraw() == operators.START_SHOWN_EVERY
     process.is_listing = False
-    assert operators._show_start() is None
-    bpy.app.timers.unregister(operators._show_start)
+    assert redraw() is None
 
 
-def test_what_is_missing_is_named_with_the_remedy(scene, process, context, monkeypatch):
+def test_what_is_missing_is_named_with_the_remedy(scene, monkeypatch):
     assert preferences.missing() == []
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "moderngl" else find(name))
     monkeypatch.setattr(sys, "platform", "darwin")
-    record = drawn(RppmPreferences, context)
+    record = shown()
     text = " ".join(record.labels)
     assert "does not find moderngl: install" in text and "macOS" in text and not record.operators
 
 
-def test_the_log_is_opened(scene, process, monkeypatch):
+def test_the_log_is_opened(process, monkeypatch):
     opened = []
     monkeypatch.setattr(type(bpy.ops.wm.path_open), "__call__", lambda self, **values: opened.append(values))
     assert bpy.types.RPPM_OT_open_log is operators.RPPM_OT_open_log
@@ -129,6 +99,7 @@ def test_the_preferences_are_those_of_the_root_package(package):
     sys.modules[package] = module
     try:
         specification.loader.exec_module(module)
+        assert module.register.__module__ == module.unregister.__module__ == f"{package}.rppm_addon"
         loaded = importlib.import_module(f"{package}.rppm_addon.blender.preferences")
         assert loaded.RppmPreferences.bl_idname == package
     finally:
@@ -138,20 +109,18 @@ def test_the_preferences_are_those_of_the_root_package(package):
             del sys.modules[".".join(parents[:count])]
 
 
-def test_checking_the_device_starts_the_real_process(scene, context, monkeypatch, tmp_path):
-    monkeypatch.setattr(renderer_process, "_process", None)
-    monkeypatch.setattr(renderer_process, "log_path", lambda: tmp_path / "renderer.log")
+def test_checking_the_device_starts_the_real_process(timers, scene, monkeypatch, tmp_path):
     process = renderer_process.renderer_process()
+    monkeypatch.setattr(process.launcher, "log_path", tmp_path / "renderer.log")
     try:
         assert bpy.ops.rppm.start_renderer() == {"FINISHED"}
         end = time.monotonic() + 90.0
         while process.state is ProcessState.STARTING and time.monotonic() < end:
             time.sleep(0.05)
         assert process.state is ProcessState.RUNNING, process.error
-        labels = drawn(RppmPreferences, context).labels
+        labels = shown().labels
         assert {process.device.name, process.device.driver, "Largest Buffer", "Texture Size"} <= set(labels)
         assert "The renderer is running" in labels and (tmp_path / "renderer.log").is_file()
     finally:
         process.close()
-        bpy.app.timers.unregister(operators._show_start)
     assert process.state is ProcessState.STOPPED and process.device is None

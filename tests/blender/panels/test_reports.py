@@ -8,8 +8,9 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
-from blender_scenes import add_light, add_mesh, add_node, export, link, new_material, set_world, to_surface
+from blender_scenes import add_light, add_mesh, export, set_world
 from drawing import context_of, drawn
+from node_trees import add_node, link, new_material, surface
 
 from rppm_addon.blender import panels, reports
 from rppm_addon.blender.export.view_layer.settings import export_settings
@@ -22,13 +23,6 @@ from rppm_addon.scene import RenderSettings
 from rppm_addon.session.client.client import RendererProcess
 from rppm_addon.session.render.results import Progress
 from rppm_addon.session.transport.sessions import SessionKind, SessionStatus
-
-
-@pytest.fixture(autouse=True)
-def no_reports():
-    reports.forget()
-    yield
-    reports.forget()
 
 
 @pytest.fixture
@@ -67,9 +61,8 @@ def test_the_shares_that_are_shown_are_those_that_are_emitted(facing):
     tree = bpy.data.objects["The AREA"].data
     tree.use_nodes = True
     tree.node_tree.nodes["Emission"].inputs["Strength"].default_value = 2.0
-    glow = new_material("Glow")
-    to_surface(glow, add_node(glow.node_tree, "ShaderNodeEmission", Strength=5.0))
-    add_mesh(facing, "Glowing", location=(0.0, 0.0, -1.0)).data.materials.append(glow)
+    glow, _ = surface("ShaderNodeEmission", Strength=5.0)
+    add_mesh(facing, "Glowing", location=(0.0, 0.0, -1.0), material=glow)
     set_world(facing, (0.3, 0.3, 0.3))
     report = rendered(facing)
     names = {source_name(f"The {kind}") for kind in factors} | {SURFACES, ENVIRONMENT}
@@ -133,23 +126,17 @@ def test_warnings_name_what_can_be_selected(facing):
     """Real warnings of an export: of a node of a material on two objects, a light, an object and the world."""
     material = new_material("Odd")
     tree = material.node_tree
-    diffuse = add_node(tree, "ShaderNodeBsdfDiffuse")
-    link(tree, add_node(tree, "ShaderNodeShaderToRGB", "Shade").outputs["Color"], diffuse.inputs["Color"])
-    to_surface(material, diffuse)
+    shade = add_node(tree, "ShaderNodeShaderToRGB", "Shade")
+    surface("ShaderNodeBsdfDiffuse", material=material, Color=shade.outputs["Color"])
     first, second = (add_mesh(facing, name, location=(0, 0, -1)) for name in ("First", "Second"))
-    other = bpy.data.materials.new("Other")
-    first.data.materials.append(other)
+    first.data.materials.append(new_material("Other"))
     first.data.materials.append(material)
     first.data.polygons[0].material_index = 1
     second.data.materials.append(material)
     add_light(facing, "AREA", "Flat", size=0.0)
     world = set_world(facing)
-    world.node_tree.nodes.new("ShaderNodeVolumeAbsorption")
-    link(
-        world.node_tree,
-        world.node_tree.nodes["Volume Absorption"].outputs[0],
-        world.node_tree.nodes["World Output"].inputs["Volume"],
-    )
+    absorption = add_node(world.node_tree, "ShaderNodeVolumeAbsorption")
+    link(world.node_tree, absorption.outputs[0], world.node_tree.nodes["World Output"].inputs["Volume"])
     rendered(facing)
     buttons = drawn(panels.warnings.RPPM_PT_warnings, context_of(facing)).operators
     named = {(button.kind, button.name): button.node for button in buttons}

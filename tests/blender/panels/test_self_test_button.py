@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The button that tries the device, with a device that is not there, which takes no time."""
 
-import time
-
 import bpy
 import pytest
 from drawing import RecordingLayout
@@ -12,15 +10,12 @@ from rppm_addon.blender.render_client import renderer_process
 
 
 @pytest.fixture
-def report(tmp_path, monkeypatch):
+def report(timers, tmp_path, monkeypatch):
     monkeypatch.setattr(renderer_process, "log_path", lambda: tmp_path / "new" / "renderer.log")
-    monkeypatch.setattr(self_test, "_running", None)
-    yield tmp_path / "new" / "rppm_report.txt"
-    if bpy.app.timers.is_registered(self_test._show_end):
-        bpy.app.timers.unregister(self_test._show_end)
+    return tmp_path / "new" / "rppm_report.txt"
 
 
-def test_a_process_writes_the_report(report, monkeypatch):
+def test_a_process_writes_the_report(report, timers, monkeypatch):
     monkeypatch.setattr(renderer_process, "environment", lambda: {"RPPM_DEVICE": "no device"})
     assert bpy.ops.rppm.self_test() == {"FINISHED"}
     with pytest.raises(RuntimeError, match="poll"):
@@ -28,9 +23,7 @@ def test_a_process_writes_the_report(report, monkeypatch):
     layout = RecordingLayout()
     self_test.draw(layout)
     assert layout.record.labels == ["The self-test runs for a minute or two"]
-    deadline = time.monotonic() + 60.0
-    while self_test._show_end() is not None and time.monotonic() < deadline:
-        time.sleep(0.02)
+    timers.run_out()
     text = report.read_text()
     assert "stopped: " in text and "there is no device 'no device'" in text and "Not all is well" in text
 

@@ -3,14 +3,15 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
+from blender_scenes import CAMERA
+from drawing import preferences_context
 
 from rppm_addon.blender import reports
 from rppm_addon.blender.engine import viewport_status
 from rppm_addon.blender.engine.viewport_status import ViewportStatus, status_text
 from rppm_addon.blender.export import ExportProgress
-from rppm_addon.scene import Camera, Scene
+from rppm_addon.scene import Scene
 from rppm_addon.session.client.client import ProcessState
 from rppm_addon.session.render.results import PhotonStatistics, Progress
 from rppm_addon.session.transport.sessions import CompilationProgress, SessionStatus
@@ -44,25 +45,20 @@ def test_the_line_says_what_fits(status, is_paused, letters, text):
 
 @pytest.fixture
 def shown(scene, monkeypatch):
-    """show(status, error, export): the line over a viewport; ``process`` is the renderer process."""
-    reports.forget()
+    lines, process = [], SimpleNamespace(state=ProcessState.RUNNING, error="")
     lines, process = [], SimpleNamespace(state=ProcessState.RUNNING, error="")
     monkeypatch.setattr(viewport_status, "renderer_process", lambda: process)
     monkeypatch.setattr(viewport_status, "failure", lambda: process.error)
     engine = SimpleNamespace(update_stats=lambda _, text: lines.append(text))
-    context = SimpleNamespace(
-        scene=scene,
-        region=SimpleNamespace(width=2000),
-        preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
-    )
+    context = preferences_context()
+    context.scene, context.region.width = scene, 2000
     shown = ViewportStatus(engine)
 
     def show(status=UNDER_WAY, error="", export=None):
         shown.show(context, status, error, export)
         return lines[-1]
 
-    yield SimpleNamespace(show=show, report=lambda *found: shown.report(context, *found), process=process)
-    reports.forget()
+    return SimpleNamespace(show=show, report=lambda *found: shown.report(context, *found), process=process)
 
 
 def test_an_error_takes_the_place_of_all_else_until_it_is_gone(shown, scene):
@@ -82,16 +78,12 @@ def test_what_the_process_and_the_export_are_at(shown):
     assert shown.show() == "The renderer has stopped: Restart is in the header"
 
 
-def test_each_iteration_is_reported_once(shown, scene, exported_scene):
-    shown.report(SessionStatus(), exported_scene)
+def test_each_iteration_is_reported_once(shown, scene):
+    exported = Scene(CAMERA)
+    shown.report(SessionStatus(), exported)
     assert reports.reports_of(scene.session_uid).viewport is None
-    shown.report(UNDER_WAY, exported_scene)
+    shown.report(UNDER_WAY, exported)
     first = reports.reports_of(scene.session_uid).viewport
     assert first.progress == PROGRESS and first.photon_statistics == PHOTONS
-    shown.report(UNDER_WAY, exported_scene)
+    shown.report(UNDER_WAY, exported)
     assert reports.reports_of(scene.session_uid).viewport is first
-
-
-@pytest.fixture
-def exported_scene() -> Scene:
-    return Scene(Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, 8))
