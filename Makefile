@@ -31,7 +31,7 @@ COMPILE_BOUND = tests/parity/features tests/parity/test_node_values.py tests/par
 	tests/parity/test_shader_nodes.py tests/parity/test_thin_wall.py tests/parity/test_texture_export.py \
 	tests/blender/export/test_bad_materials.py tests/blender/export/test_material_fuzz.py \
 	tests/blender/render/test_animation.py tests/blender/render/test_animations.py \
-	tests/gl/materials/test_material_programs.py tests/gl/device/test_gl_layer.py \
+	tests/gl/materials/test_material_programs.py tests/gl/gl/test_gl_layer.py \
 	tests/gl/surfaces/test_adjoint_bsdf.py tests/gl/surfaces/test_displacement.py tests/gl/surfaces/test_hair.py \
 	tests/gl/device_scene/test_large_buffers.py
 # Three at a time also on two cores: most tests compile or render on a single core, and some wait for processes.

@@ -42,7 +42,6 @@ def test_a_seed_gives_the_same_picture(renderer, monkeypatch, direct_light):
     with Renderer() as second:
         elsewhere = arrays(second, busy_room(direct_light))
     for mine, same, fresh in zip(first, again, elsewhere, strict=True):
-        print("floats that differ:", (mine != same).sum(), (mine != fresh).sum(), "of", mine.size)
         np.testing.assert_array_equal(mine.view(np.uint32), same.view(np.uint32))
         np.testing.assert_array_equal(mine.view(np.uint32), fresh.view(np.uint32))
     assert (first[0] != other[0]).mean() > 0.5
@@ -78,9 +77,6 @@ def test_errors_of_seeds_are_independent(renderer, direct_light):
     for a, b in itertools.combinations(range(seeds), 2):
         found.append(errors[a] @ errors[b].T / exact.size)
     found = np.array(found)
-    print(
-        "correlation", found.mean(), "deviation", found.std(), "of independent pixels", limit, "most", abs(found).max()
-    )
     assert abs(found.mean()) < 4 * limit / np.sqrt(found.size)
     assert abs(found.std() / limit - 1) < 4 / np.sqrt(2 * found.size)
     assert abs(found).max() < 5 * limit

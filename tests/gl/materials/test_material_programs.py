@@ -8,6 +8,7 @@ import logging
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated, radiance_of
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.materials.compiler import compiler
@@ -35,9 +36,7 @@ def shown(*graphs: NodeGraph) -> Scene:
 
 
 def picture(mapper: ProgressivePhotonMapper, scene: Scene) -> np.ndarray:
-    mapper.build(scene)
-    mapper.iterate()
-    radiance = mapper.film.read_radiance()
+    radiance = radiance_of(mapper, scene)
     assert np.isfinite(radiance).all()
     return radiance[..., :3]
 
@@ -201,8 +200,7 @@ def test_bump_turns_the_normal_by_the_slope_of_its_height(mapper):
     scene.settings.filter_width = 0.0
     floor = scene.instances[0]
     scene.instances, floor.materials = [floor], [len(scene.materials) - 1]
-    mapper.build(scene)
-    mapper.iterate()
+    iterated(mapper, scene)
     depth, normals = mapper.film.read_passes().values()
     seen = (normals[..., 2] > 0.99) & (depth < 1e9)
     found = 2.0 * mapper.film.read_radiance()[seen][:, :3] - 1.0

@@ -6,18 +6,16 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Mesh, RenderSettings, Scene, World
+from rppm_addon.scene import Mesh, World
 
 
 def seen(renderer, mesh: Mesh, lobe: Lobe, eye: tuple, iterations: int) -> np.ndarray:
     """(H, W) radiance of the surface alone in the sky, seen from a point that looks at the origin."""
-    camera = Camera(scenes.looking(eye, (0, 0, 0)), (-0.3, 0.3, -0.3, 0.3), 16, 16)
-    settings = RenderSettings(
+    scene = scenes.scene_of(
+        scenes.camera(eye, (0, 0, 0), 0.3, 16), (mesh, material("white", lobe)), world=World(np.ones(3)),
         iterations=iterations, photons=64, photon_path_length=2, camera_path_length=8, filter_width=0.0,
         specular_roughness=1.0,
     )  # fmt: skip
-    surface = material("white", lobe)
-    scene = Scene(camera, [mesh], [Instance(0, np.eye(4), [0])], [surface], [], World(np.ones(3)), settings=settings)
     return renderer.render(scene).frame.combined[..., 0].astype(np.float64)
 
 
@@ -25,11 +23,10 @@ def seen(renderer, mesh: Mesh, lobe: Lobe, eye: tuple, iterations: int) -> np.nd
 @pytest.mark.parametrize("roughness", [0.0, 0.4])
 def test_a_pane_without_an_inside_shows_the_sky(renderer, side, roughness):
     """From either side, though what is seen through it is of another index."""
-    pane = scenes.rectangle("pane", (-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0))
+    pane = scenes.square("pane", 9.0)
     lobe = Lobe(LobeKind.GLASS, roughness=roughness)
     picture = seen(renderer, pane, lobe, (0, -1, 2 * side), 64 if roughness else 2)
     error = picture.std() / np.sqrt(picture.size)
-    print(f"roughness {roughness} side {side}: {picture.mean():.5f} +- {error:.5f}")
     assert error < 2e-3
     assert abs(picture.mean() - 1.0) < 4 * error + 2e-3  # the tables of albedos
 
