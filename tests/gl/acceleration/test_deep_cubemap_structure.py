@@ -17,6 +17,7 @@ from rppm_addon.self_test.ray_queries import TracedTriangles
 POINTS = 200_000
 BASE_LEVEL = 2
 MAX_LISTED = 6
+MAX_TOUCHED = 7  # of the 16 cells of a tile by each triangle, on average
 
 
 def points_on(triangles: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -137,6 +138,85 @@ def test_lists_are_for_few_triangles_and_bins_for_many(context, library):
 def distinct(structure: Structure) -> np.ndarray:
     """(row, triangle) of all leaves, each once."""
     return np.unique(structure.entries[:, [0, 2]], axis=0)
+
+
+def clipped_extent(triangle: np.ndarray, face: int) -> np.ndarray | None:
+    """Least and greatest position, 0 to 1, of a triangle about the center as seen on a face; None if it is not."""
+    axis = face >> 1
+    turned = triangle[:, [(axis + 1) % 3, (axis + 2) % 3, axis]] * [1, 1, -1 if face & 1 else 1]
+    polygon = list(turned)
+    for plane in np.array([[1, 0, 1], [-1, 0, 1], [0, 1, 1], [0, -1, 1]]):
+        clipped = []
+        for a, b in zip(polygon, polygon[1:] + polygon[:1]):
+            inside_a, inside_b = a @ plane, b @ plane
+            if inside_a >= 0:
+                clipped.append(a)
+            if (inside_a >= 0) != (inside_b >= 0):
+                clipped.append(a + (b - a) * (inside_a / (inside_a - inside_b)))
+        polygon = clipped
+    points = np.array(polygon).reshape(-1, 3)
+    if not len(points) or points[:, 2].min() < 1e-3:
+        return None
+    positions = points[:, :2] / points[:, 2:] * 0.5 + 0.5
+    return np.concatenate([positions.min(0), positions.max(0)])
+
+
+def touched_cells(extents: np.ndarray, x: int, y: int, side: int, slack: float) -> int:
+    """Cells of the tile that would divide a cell that extents touch, added up; at least one each."""
+    first = np.floor((extents[:, :2] - slack) * side * 4) - [4 * x, 4 * y]
+    last = np.floor((extents[:, 2:] + slack) * side * 4) - [4 * x, 4 * y]
+    return int((np.clip(last, 0, 3) - np.clip(first, 0, 3) + 1).prod(1).sum())
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_cells_that_hold_much_are_divided_where_that_gains(context, library, name):
+    triangles, resolution = SCENES[name](), 1024
+    with TracedTriangles(context, library, triangles, CENTERS["plain"], resolution) as scene:
+        structure = read_structure(scene.structure)
+        about = triangles.astype(float) - scene.center.astype(float)
+    # triangles of each cell, handed up from the leaves
+    pairs, held = distinct(structure), {}
+    parent = np.full(len(structure.kind), -1)
+    divided = np.flatnonzero(structure.kind == TILE)
+    parent[structure.children[divided]] = divided[:, None]
+    while len(pairs):
+        order = np.argsort(pairs[:, 0], kind="stable")
+        rows, starts = np.unique(pairs[order, 0], return_index=True)
+        for row, group in zip(rows, np.split(pairs[order, 1], starts[1:])):
+            held[row] = np.union1d(held.get(row, group), group)
+        pairs = np.stack([parent[pairs[:, 0]], pairs[:, 1]], 1)
+        pairs = np.unique(pairs[pairs[:, 0] >= 0], axis=0)
+    extents, seen = {}, set()
+    rng = np.random.default_rng(6)
+    levels = int(np.log2(resolution)) // 2
+    for row in rng.permutation([row for row in held if structure.level[row] >= BASE_LEVEL])[:4000]:
+        is_divided = structure.kind[row] == TILE
+        if structure.level[row] == levels:
+            assert not is_divided
+            continue
+        face = structure.face[row]
+        found = []
+        for triangle in held[row]:
+            if (face, triangle) not in extents:
+                extents[face, triangle] = clipped_extent(about[triangle], face)
+            found.append(extents[face, triangle])
+        if any(extent is None for extent in found):
+            continue  # touched by the margin only, or near the center
+        side = structure.root_side << (2 * int(structure.level[row]))
+        x, y = structure.x[row], structure.y[row]
+        min_gain = int(structure.state["min_gain"])
+
+        number = len(found)
+
+        def gains(touched, number=number, min_gain=min_gain):
+            return touched <= MAX_TOUCHED * number and touched + 16 * min_gain < 16 * number
+
+        if is_divided:
+            assert gains(touched_cells(np.array(found), x, y, side, 0.0))
+        else:
+            assert not gains(touched_cells(np.array(found), x, y, side, 3e-5))
+        seen.add(bool(is_divided))
+    assert seen == ({False} if name == "furnished room" else {False, True})
 
 
 @pytest.mark.parametrize("max_bins", [1, 1024])

@@ -77,11 +77,8 @@ def test_a_closed_box_with_walls_of_a_millimeter_is_black_outside(renderer, dire
     scene.materials[0] = scenes.diffuse(0.9, 0.9, 0.9)
     if mirrored:
         scene.camera.matrix = scenes.looking((2, 0, 0), (3, 0, 0))
-        scenes.add(
-            scene,
-            scenes.rectangle("mirror", (4, -2, -2), (4, -2, 2), (4, 2, 2), (4, 2, -2)),
-            material("mirror", Lobe(LobeKind.GLOSSY)),
-        )
+        surface = material("mirror", Lobe(LobeKind.GLOSSY))
+        scenes.add(scene, scenes.rectangle("mirror", (4, -2, -2), (4, -2, 2), (4, 2, 2), (4, 2, -2)), surface)
     assert (picture(renderer, scene) == 0).all()
     scene.camera = view((0.3, 0.3, 0.3), (-1, 0.3, -0.5), 0.1)
     assert (picture(renderer, scene) > 0).mean() > 0.99  # what the walls hide

@@ -23,10 +23,9 @@ def with_blocks_of(context, monkeypatch, limit):
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
 
 
-@pytest.mark.parametrize(
-    ("structure", "longest"),
-    [(AccelerationStructure.DEEP_CUBEMAP, "deep cubemap fragments"), (AccelerationStructure.BVH, "BVH nodes")],
-)
+@pytest.mark.parametrize(("structure", "longest"), [
+    (AccelerationStructure.DEEP_CUBEMAP, "deep cubemap fragments"), (AccelerationStructure.BVH, "BVH nodes"),
+])  # fmt: skip
 def test_many_triangles(mapper, other_mapper, context, monkeypatch, structure, longest):
     scene = scenes.room(16, photons=128, camera_path_length=3, photon_path_length=3, acceleration_structure=structure)
     scene.meshes.append(scenes.sphere("ball", 64, 40))

@@ -21,12 +21,8 @@ def lit_by(kind: str) -> Scene:
     scene.world = World(BLACK)
     scene.materials[0] = material("floor", Lobe(LobeKind.GLOSSY, roughness=0.25, color=FLOOR))
     if kind == "triangles":
-        scenes.add(
-            scene,
-            scenes.square("lamp", HALF, HEIGHT),
-            material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0))),
-            light_group="lamp",
-        )
+        glow = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)))
+        scenes.add(scene, scenes.square("lamp", HALF, HEIGHT), glow, light_group="lamp")
         return scene
     shape = {"size": (2 * HALF, 2 * HALF)} if kind == "AREA" else {"radius": HALF, "soft_falloff": kind == "soft"}
     matrix = scenes.placed(0.0, 0.0, HEIGHT)

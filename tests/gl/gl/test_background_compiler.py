@@ -24,6 +24,10 @@ class Driver:
         assert self.ready.wait(60.0)
         return SimpleNamespace(compile=self._compile, release=lambda: None)
 
+    def wait_for(self, count):
+        for _ in range(count):
+            assert self.done.acquire(timeout=60.0)
+
     def _compile(self, source):
         if source.text == "wrong":
             raise ValueError(source.text)
@@ -58,8 +62,7 @@ def test_the_longest_that_nobody_has_claimed_is_next(driver):
     driver.ready.set()
     compiler.claim(first)  # while it is being compiled: returns when it is done
     assert driver.compiled[0] == "first"
-    for _ in range(3):
-        assert driver.done.acquire(timeout=60.0)
+    driver.wait_for(3)
     assert driver.compiled == ["first", "aaa", "a"]
 
 
@@ -71,8 +74,7 @@ def test_what_pictures_need_comes_before_what_has_a_stand_in(driver):
     compiler.submit(needed)
     assert compiler.knows(longer) and not compiler.has_tried(longer)
     driver.ready.set()
-    for _ in range(3):
-        assert driver.done.acquire(timeout=60.0)
+    driver.wait_for(3)
     compiler.claim(longer)
     assert driver.compiled == ["first", "aa", "aaaa"] and compiler.has_tried(longer)
     compiler.submit(longer)  # is there
@@ -89,8 +91,7 @@ def test_what_nobody_waits_for_has_one_thread(driver, monkeypatch):
     compiler.hurry(True)
     assert compiler._threads == {True: 1, False: 1}
     driver.ready.set()
-    for _ in range(3):
-        assert driver.done.acquire(timeout=60.0)
+    driver.wait_for(3)
 
 
 def test_what_fails_is_left_to_whoever_runs_it(driver):

@@ -227,3 +227,25 @@ def test_a_buffer_larger_than_the_memory_left_is_an_error_in_time(context, monke
     assert buffer.size == 1 << 10  # what there was is kept
     assert buffer.require(2 << 20)
     buffer.release()
+
+
+HALF = (sources.SHADER_FOLDER / "common" / "half.glsl").read_text()
+HALVES = """#version 430 core
+layout(local_size_x = 64) in;
+#include "half.glsl"
+readonly buffer Words { uint words[]; };
+writeonly buffer Unpacked { vec2 unpacked[]; };
+void main() { unpacked[gl_GlobalInvocationID.x] = two_halves(words[gl_GlobalInvocationID.x]); }
+"""
+
+
+def test_every_half_is_the_float_that_numpy_has(context, shader_folder):
+    (shader_folder / "half.glsl").write_text(HALF)
+    (shader_folder / "all.comp").write_text(HALVES)
+    halves = np.arange(1 << 16, dtype=np.uint16)
+    words, unpacked = context.moderngl.buffer(halves.tobytes()), context.moderngl.buffer(reserve=4 << 16)
+    ProgramLibrary(context).compute("all.comp").run(1 << 15, {"Words": words, "Unpacked": unpacked})
+    found, expected = np.frombuffer(unpacked.read(), np.float32), halves.view(np.float16).astype(np.float32)
+    numbers = ~np.isnan(expected)
+    np.testing.assert_array_equal(found.view(np.uint32)[numbers], expected.view(np.uint32)[numbers])
+    assert np.isnan(found[~numbers]).all()

@@ -44,11 +44,8 @@ def glossy_floor(light: str, lobe: Lobe, cut: float, mode: DirectLight, final_ga
     if light == "image":
         scene.images, scene.world = [scenes.sky_with_a_sun(32, 0.01)], image_world(0)
     if light == "mesh":
-        scenes.add(
-            scene,
-            scenes.rectangle("light", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)),
-            material("light", Lobe(LobeKind.EMISSION, color=(9, 9, 9))),
-        )
+        glow = material("light", Lobe(LobeKind.EMISSION, color=(9, 9, 9)))
+        scenes.add(scene, scenes.rectangle("light", (1, -0.3, 1), (1, 0.3, 1), (1.2, 0.3, 1.5), (1.2, -0.3, 1.5)), glow)
     return scene
 
 

@@ -29,12 +29,8 @@ def lit_floor(name: str, aimed: bool) -> Scene:
         scene.images = [scenes.sky_with_a_sun(16, 0.02)]
         scene.world = image_world(0)
     if name == "mesh":
-        scenes.add(
-            scene,
-            scenes.sphere("light", 8, 4),
-            material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5))),
-            scenes.placed(0, 0, 2, 0.3),
-        )
+        glow = material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5)))
+        scenes.add(scene, scenes.sphere("light", 8, 4), glow, scenes.placed(0, 0, 2, 0.3))
     if aimed:
         scene.materials.append(material("air", Lobe(LobeKind.REFRACTION, ior=1.0)))
         scene.meshes.append(scenes.sphere("ball"))

@@ -54,12 +54,8 @@ def crowded_scene(count: int, world: float = 0.1):
     """A floor under many lights and an emissive ball of triangles."""
     scene = floor_scene(None, DirectLight.RAYS, World(np.full(3, world)))
     scene.lights = lights_of_all_kinds(count)
-    scenes.add(
-        scene,
-        scenes.sphere("ball", 8, 4),
-        material("shining", Lobe(LobeKind.EMISSION, color=(1, 1, 1))),
-        scenes.placed(0.4, 0.3, 0.9, 0.2),
-    )
+    glow = material("shining", Lobe(LobeKind.EMISSION, color=(1, 1, 1)))
+    scenes.add(scene, scenes.sphere("ball", 8, 4), glow, scenes.placed(0.4, 0.3, 0.9, 0.2))
     return scene
 
 

@@ -294,11 +294,8 @@ def test_a_narrow_spread_is_sampled_where_it_shines(mapper, library, name, degre
 def walled_scene() -> Scene:
     """A floor and a wall of side 1 at its edge that emits 1."""
     scene = floor_scene(None, DirectLight.RAYS)
-    scenes.add(
-        scene,
-        scenes.rectangle("wall", (0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)),
-        material("wall", Lobe(LobeKind.EMISSION, color=(1, 1, 1))),
-    )
+    glow = material("wall", Lobe(LobeKind.EMISSION, color=(1, 1, 1)))
+    scenes.add(scene, scenes.rectangle("wall", (0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)), glow)
     return scene
 
 

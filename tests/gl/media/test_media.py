@@ -11,7 +11,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene, Texels, World
 
 ABSORPTION, OTHER = np.array([0.0, 0.5, 0.8]), np.array([0.3, 0.1, 0.2])
-"""Of bodies and of others within them, 1/m."""
+"""Absorption of bodies and of others within them, 1/m."""
 SHINING = np.array([0.4, 0.7, 1.0])
 """Emission of media, W/(m^3 sr)."""
 SIZE, HALF = 8, 0.3
@@ -206,7 +206,7 @@ def test_a_body_that_shines_lights_surfaces(renderer):
 
 
 def texel_camera(triangle: int, **members: object) -> Camera:
-    """Of texels of a triangle of the first instance."""
+    """A camera of texels of one triangle of the first instance."""
     texels = Texels(
         instance=0,
         triangles=np.full((SIZE, SIZE), triangle, np.int32),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Translucent, rough diffuse and held out surfaces through all stages, against closed forms."""
+"""Translucent, rough diffuse, white and held out surfaces through all stages, against closed forms."""
 
 import dataclasses
 import itertools
@@ -11,7 +11,7 @@ from support.families import some_each_time
 from support.lobes import Lobe, LobeKind
 from support.lobes import material as lobe_material
 
-from rppm_addon.scene import DirectLight, Light, LightKind, Material, Scene
+from rppm_addon.scene import DirectLight, Light, LightKind, Material, Mesh, Scene, World
 
 MODES = DirectLight.RAYS, DirectLight.PHOTONS
 COLOR = (0.8, 0.5, 0.3)
@@ -114,3 +114,32 @@ def test_holdouts_cut_the_picture(renderer, film_transparent):
     np.testing.assert_allclose(whole[..., 3], 1.0)
     np.testing.assert_allclose(cut[..., 3], 0.25, atol=1e-4)
     np.testing.assert_allclose(cut[..., :3].mean((0, 1)), 0.25 * whole[..., :3].mean((0, 1)), rtol=1e-4)
+
+
+def seen(renderer, mesh: Mesh, lobe: Lobe, eye: tuple, iterations: int) -> np.ndarray:
+    """(H, W) radiance of a white surface alone in a sky of radiance 1: whatever scatters there, its radiance is 1."""
+    scene = scenes.scene_of(
+        scenes.camera(eye, (0, 0, 0), 0.3, 16), (mesh, lobe_material("white", lobe)), world=World(np.ones(3)),
+        iterations=iterations, photons=64, photon_path_length=2, camera_path_length=8, filter_width=0.0,
+        specular_roughness=1.0,
+    )  # fmt: skip
+    return renderer.render(scene).frame.combined[..., 0].astype(np.float64)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("roughness", [0.0, 0.4])
+def test_a_pane_without_an_inside_shows_the_sky(renderer, side, roughness):
+    """From either side, though what is seen through it is of another index."""
+    pane = scenes.square("pane", 9.0)
+    lobe = Lobe(LobeKind.GLASS, roughness=roughness)
+    picture = seen(renderer, pane, lobe, (0, -1, 2 * side), 64 if roughness else 2)
+    error = picture.std() / np.sqrt(picture.size)
+    assert error < 2e-3
+    assert abs(picture.mean() - 1.0) < 4 * error + 2e-3  # the tables of albedos
+
+
+def test_smooth_normals_of_few_faces_lose_no_reflection(renderer):
+    """Mirrored directions that smooth normals send below the surface are lifted above it, as in Cycles."""
+    ball = scenes.sphere("ball", 8, 6)
+    picture = seen(renderer, ball, Lobe(LobeKind.GLOSSY), (0, -5, 1), 2)
+    np.testing.assert_allclose(picture, 1.0, atol=1e-5)

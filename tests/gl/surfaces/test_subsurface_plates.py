@@ -4,9 +4,10 @@
 import numpy as np
 import scenes
 from rendering import iterated
+from test_subsurface import sun, wax
 
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
-from rppm_addon.scene import DirectLight, Light, LightKind, Material, NodeGraph, Scene
+from rppm_addon.scene import DirectLight, Scene
 
 THICKNESS, COLOR, IOR, ROUGHNESS = 0.02, 0.9, 1.4, 0.5
 # Of either material, meters.
@@ -88,17 +89,10 @@ def plates() -> Scene:
     """One of each material, side by side below a sun."""
     plate = scenes.box("plate")
     plate.positions *= np.float32([1.0, 1.0, THICKNESS / 2])
-    materials = []
-    for method, radius in RADII.items():
-        graph = NodeGraph()
-        graph.surface = graph.add(
-            "subsurface_scattering", "bssrdf", options={"falloff": method}, color=(COLOR,) * 3, scale=radius,
-            radius=(1.0, 1.0, 1.0), roughness=ROUGHNESS, ior=IOR,
-        )  # fmt: skip
-        materials.append(Material(method, graph))
-    sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 9), (0, 0.001, 0)), np.full(3, 1.0))
+    looks = {"roughness": ROUGHNESS, "ior": IOR}
+    materials = [wax((COLOR, COLOR, COLOR), radius, method, **looks) for method, radius in RADII.items()]
     scene = scenes.scene_of(
-        scenes.camera((0, -5, 0), (0, 0, 0), 0.1, 8), *((plate, each) for each in materials), lights=[sun],
+        scenes.camera((0, -5, 0), (0, 0, 0), 0.1, 8), *((plate, each) for each in materials), lights=[sun(0, 0, 9)],
         photons=PHOTONS, photon_path_length=2, camera_path_length=1, direct_light=DirectLight.PHOTONS,
     )  # fmt: skip
     for instance, x in zip(scene.instances, (-1.1, 1.1), strict=True):
