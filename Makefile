@@ -30,7 +30,7 @@ extension: setup ## Build the zip that Blender installs, to build/extension/ (EX
 COMPILE_BOUND = tests/parity/features tests/parity/nodes \
 	tests/blender/export/shading/test_bad_materials.py tests/blender/export/shading/test_material_fuzz.py \
 	tests/blender/engine/test_animation.py tests/blender/engine/test_animations.py \
-	tests/gl/materials/test_material_programs.py tests/gl/device/test_gl_layer.py \
+	tests/gl/materials/test_material_programs.py tests/gl/gl/test_gl_layer.py \
 	tests/gl/surfaces/test_adjoint_bsdf.py tests/gl/surfaces/test_displacement.py tests/gl/surfaces/test_hair.py \
 	tests/gl/device_scene/test_large_buffers.py
 # Three at a time also on two cores: most tests compile or render on a single core, and some wait for processes.

@@ -92,7 +92,7 @@ run() {
     done
     part predictions "$python" -m benchmarks.predictions.run "$folder/scenes/pool.npz" --measure \
         ${QUICK:+--pixels 1024 --iterations 1}
-    local tests=(tests/gl/device/test_gl_layer.py)
+    local tests=(tests/gl/gl/test_gl_layer.py)
     [ -n "${QUICK:-}" ] || tests=(tests/gl)
     part tests "$python" -m pytest -q -p no:cacheprovider -m 'not long' "${tests[@]}"
     local figures=(--saved-scenes "$folder/benchmark_scenes" --output "$results/benchmarks")

@@ -8,17 +8,8 @@ import scenes
 from moving_scenes import everything_moves
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Aperture,
-    Camera,
-    DirectLight,
-    Image,
-    Light,
-    LightKind,
-    Panorama,
-    PanoramaKind,
-    Scene,
-)
+from rppm_addon.scene import Aperture, Camera, DirectLight, Instance, Light, LightKind, Panorama, PanoramaKind, Scene
+from rppm_addon.scene.images import Image
 from rppm_addon.scene.passes import FILM_PASSES
 
 
@@ -34,16 +25,10 @@ def busy_room(direct_light: DirectLight = DirectLight.RAYS) -> Scene:
     light = np.eye(4)
     light[:3, 3] = (0.9, 0.9, 0.9)
     scene.lights.append(Light("in the corner", LightKind.POINT, light, np.full(3, 0.5)))
-    pane = material("pane", Lobe(LobeKind.PRINCIPLED, alpha=0.4, roughness=0.0))
-    scene.materials.append(pane)
-    scene.meshes.append(
-        scenes.rectangle("pane", (-0.5, -0.8, -0.5), (0.5, -0.8, -0.5), (0.5, -0.8, 0.5), (-0.5, -0.8, 0.5))
-    )
-    scene.instances.append(
-        dataclasses.replace(
-            scene.instances[0], mesh=len(scene.meshes) - 1, matrix=np.eye(4), materials=[len(scene.materials) - 1]
-        )
-    )
+    scene.materials.append(material("pane", Lobe(LobeKind.PRINCIPLED, alpha=0.4, roughness=0.0)))
+    corners = (-0.5, -0.8, -0.5), (0.5, -0.8, -0.5), (0.5, -0.8, 0.5), (-0.5, -0.8, 0.5)
+    scene.meshes.append(scenes.rectangle("pane", *corners))
+    scene.instances.append(Instance(len(scene.meshes) - 1, np.eye(4), [len(scene.materials) - 1]))
     return scene
 
 
@@ -116,21 +101,14 @@ def scaled(factor: float) -> Scene:
         return result
 
     instances = [dataclasses.replace(item, matrix=grown @ item.matrix) for item in scene.instances]
-    lights = [
-        dataclasses.replace(
-            light,
-            matrix=placed(light.matrix),
-            size=tuple(factor * side for side in light.size),
-            strength=light.strength * (factor**2 if light.kind is LightKind.POINT else 1.0),
+    lights = []
+    for light in scene.lights:
+        size, power = tuple(factor * side for side in light.size), factor**2 if light.kind is LightKind.POINT else 1.0
+        lights.append(
+            dataclasses.replace(light, matrix=placed(light.matrix), size=size, strength=light.strength * power)
         )
-        for light in scene.lights
-    ]
-    camera = dataclasses.replace(
-        scene.camera,
-        matrix=placed(scene.camera.matrix),
-        clip_start=factor * scene.camera.clip_start,
-        clip_end=factor * scene.camera.clip_end,
-    )
+    near, far = factor * scene.camera.clip_start, factor * scene.camera.clip_end
+    camera = dataclasses.replace(scene.camera, matrix=placed(scene.camera.matrix), clip_start=near, clip_end=far)
     return dataclasses.replace(scene, instances=instances, lights=lights, camera=camera)
 
 

@@ -4,14 +4,10 @@
 import dataclasses
 
 import numpy as np
+from rendering import radiance_of
 
-from rppm_addon.scene import (
-    CameraMovement,
-    Deformation,
-    Movement,
-    Scene,
-    Shutter,
-)
+from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.scene import CameraMovement, Deformation, Movement, Scene, Shutter
 
 ENDS = np.array([0.0, 1.0])
 BALL = 5
@@ -40,3 +36,15 @@ def everything_moves(scene: Scene, amount: float) -> Scene:
         meshes=[Deformation(5, ENDS, shapes, np.stack([mesh.corner_normals] * 2))],
         camera=CameraMovement(ENDS, camera_way.matrices, np.array([camera.window] * 2)),
     )
+
+
+def films_of_moved(mapper: ProgressivePhotonMapper, scene: Scene) -> list[np.ndarray]:
+    """Radiance of a crowded room, and that after an object was moved."""
+    place = np.array(scene.instances[8].matrix)
+    place[:3, 3] += 0.1, -0.2, 0.1
+    moved = dataclasses.replace(scene, instances=[*scene.instances])
+    moved.instances[8] = dataclasses.replace(moved.instances[8], matrix=place)
+    found = [radiance_of(mapper, scene)]
+    mapper.update(moved)
+    mapper.iterate()
+    return [*found, mapper.film.read_radiance()]

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import scenes
-from path_classes import lobe, view
+from path_scenes import lobe, view
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Image, Instance, RenderSettings, Scene, World
+from rppm_addon.scene import Image, Instance, Scene, World
 from rppm_addon.scene.meshes import RayVisibility
 
 FLOOR, BLACK, GRAY = np.array([0.9, 0.7, 0.5]), np.zeros(3), np.full(3, 0.6)
@@ -21,36 +21,29 @@ def room(walls: np.ndarray, hole: float = HOLE, **settings: object) -> Scene:
     """A floor under a ceiling with a hole, between walls of one color, in a white world, seen from within."""
     a, b, h = HALF, hole, HEIGHT
     corners = [(-a, -a), (a, -a), (a, a), (-a, a)]
-    sides = list(zip(corners, [*corners[1:], corners[0]], strict=True))
-    meshes = [scenes.rectangle("floor", *((x, y, 0) for x, y in corners))]
-    meshes += [scenes.rectangle(f"wall {n}", (*p, 0), (*q, 0), (*q, h), (*p, h)) for n, (p, q) in enumerate(sides)]
+    sides = zip(corners, [*corners[1:], corners[0]], strict=True)
+    meshes = [scenes.rectangle("wall", (*p, 0), (*q, 0), (*q, h), (*p, h)) for p, q in sides]
     if hole < a:
         ceiling = [((-a, -a), (a, -b)), ((-a, b), (a, a))]
         ceiling += [((-a, -b), (-b, b)), ((b, -b), (a, b))] if b else []
-        for n, ((x0, y0), (x1, y1)) in enumerate(ceiling):
-            meshes.append(scenes.rectangle(f"ceiling {n}", (x0, y0, h), (x1, y0, h), (x1, y1, h), (x0, y1, h)))
-    shared = RenderSettings(
-        iterations=6, photons=1 << 16, photon_path_length=4, camera_path_length=4, filter_width=0.0,
-        radius_minimum=0.05, radius_maximum=0.05,
-    )  # fmt: skip
-    return Scene(
-        view((-0.4, 0.0, 0.7), (0.0, 0.0, 0.0), 0.2),
-        meshes,
-        [Instance(index, np.eye(4), [min(index, 1)]) for index in range(len(meshes))],
-        [material("floor", lobe("D", FLOOR)), material("walls", lobe("D", walls))],
-        world=World(np.ones(3)),
-        settings=shared.with_values(**settings),
+        for (x0, y0), (x1, y1) in ceiling:
+            meshes.append(scenes.rectangle("ceiling", (x0, y0, h), (x1, y0, h), (x1, y1, h), (x0, y1, h)))
+    shared = {"iterations": 6, "photons": 1 << 16, "photon_path_length": 4, "camera_path_length": 4}
+    shared |= {"filter_width": 0.0, "radius_minimum": 0.05, "radius_maximum": 0.05}
+    camera, floor = view((-0.4, 0.0, 0.7), (0.0, 0.0, 0.0), 0.2), scenes.square("floor", a)
+    scene = scenes.scene_of(
+        camera, (floor, material("floor", lobe("D", FLOOR))), world=World(np.ones(3)), **shared | settings
     )
+    scene.materials.append(material("walls", lobe("D", walls)))
+    for number, mesh in enumerate(meshes, 1):
+        scene.meshes.append(mesh)
+        scene.instances.append(Instance(number, np.eye(4), [1]))
+    return scene
 
 
 def hole_form_factor(scene: Scene) -> np.ndarray:
     """(H, W) of the hole, from what each pixel sees of the floor (Howell, configuration B-4, by corners)."""
-    camera, half = scene.camera, scene.camera.window[1]
-    side = half * ((np.arange(camera.width) + 0.5) / camera.width * 2 - 1)
-    x, y = np.meshgrid(side, side)
-    matrix = np.asarray(camera.matrix)
-    rays = np.stack([x, y, -np.ones_like(x)], -1) @ matrix[:3, :3].T
-    place = matrix[:3, 3] - rays * (matrix[2, 3] / rays[..., 2])[..., None]
+    place = scenes.floor_places(scene.camera)
 
     def corner(u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Return the form factor of a rectangle from above the place to (u, v) off it."""

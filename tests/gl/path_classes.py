@@ -5,34 +5,32 @@ A spot lights the first surface of a class only, and the path lengths are as sho
 looks through pixel centers at the inside of smoothly lit surfaces, farther from the edges than a splat reaches.
 """
 
-import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 import path_quadrature as quadrature
+import pytest
 import scenes
-from path_quadrature import Plane, Spot
-from support.lobes import Lobe, LobeKind, material
+from path_constants import (
+    FIRST,
+    FLOOR,
+    FLOOR_AXES,
+    NARROW,
+    PHOTONS,
+    RAYS,
+    SECOND,
+    SHARP,
+    TRACED,
+    UP,
+    WALL,
+    WALL_AXES,
+    WIDE,
+)
+from path_quadrature import Spot
+from path_scenes import colored, level, lobe, scattering, scene_of, spot, traced_only, view
 
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
-
-SIZE = 24
-"""Pixels along a side."""
-MODES = RAYS, PHOTONS = DirectLight.RAYS, DirectLight.PHOTONS
-FIRST, SECOND, THIRD = np.array([0.9, 0.7, 0.5]), np.array([0.6, 0.8, 0.7]), np.array([0.8, 0.75, 0.9])
-"""Colors of the surfaces in the order in which light meets them: a wrong number of bounces shows in the hue."""
-CUT = 0.5
-SHARP, TRACED, STORED = 0.2, 0.48, 0.52
-"""Roughness that draws caustics, just below the cut-off, just above it."""
-EXTENT = 0.35
-"""Radius of the spot, meters, for paths that find it by scattering alone."""
-UP, DOWN = np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0])
-FLOOR = Plane(np.zeros(3), UP)
-WALL = Plane(np.array([1.2, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]))
-FLOOR_AXES, WALL_AXES = np.eye(3)[:2], np.eye(3)[1:]
-NARROW, WIDE = 0, 1
-"""Indices into ProgressivePhotonMapper.splat_radii."""
+from rppm_addon.scene import Camera, DirectLight, Scene
 
 
 @dataclass
@@ -49,76 +47,16 @@ class Case:
 Build = Callable[[DirectLight], Case]
 
 
-# --- parts of scenes -----------------------------------------------------------------------------
-
-
-def lobe(kind: str | float, color: np.ndarray) -> Lobe:
-    """D, S or the roughness of G."""
-    if kind == "D":
-        return Lobe(LobeKind.DIFFUSE, color=tuple(color))
-    roughness = 0.0 if kind == "S" else kind
-    return Lobe(LobeKind.GLOSSY, color=tuple(color), roughness=roughness, multiscatter=False)
-
-
-def scattering(kind: str | float) -> quadrature.Scatter:
-    return quadrature.diffuse if kind == "D" else quadrature.glossy(kind)
-
-
-def level(name: str, z: float, low: float = -1.5, high: float = 1.5, width: float = 1.5) -> Mesh:
-    """A rectangle that faces up."""
-    return scenes.rectangle(name, (low, -width, z), (high, -width, z), (high, width, z), (low, width, z))
-
-
-def facing_down(name: str, z: float, low: float, high: float) -> Mesh:
-    return scenes.rectangle(name, (low, -1.5, z), (low, 1.5, z), (high, 1.5, z), (high, -1.5, z))
-
-
-def spot(position: tuple, target: tuple, half_angle: float, radius: float = 0.0) -> Light:
-    matrix = scenes.looking(position, target)
-    return Light(
-        "spot", LightKind.SPOT, matrix, np.full(3, 5.0), radius=radius, spot_angle=2 * half_angle, spot_blend=1.0
-    )
-
-
-def view(position: tuple, target: tuple, tangent: float) -> Camera:
-    return Camera(scenes.looking(position, target), (-tangent, tangent, -tangent, tangent), SIZE, SIZE, clip_start=0.01)
-
-
-def scene_of(
-    surfaces: list[tuple[Mesh, Lobe]],
-    light: Light | None,
-    camera: Camera,
-    mode: DirectLight,
-    photon_path_length: int,
-    camera_path_length: int,
-    iterations: int = 6,
-    photons: int = 8192,
-) -> Scene:
-    settings = RenderSettings(
-        iterations=iterations, photons=photons, direct_light=mode, photon_path_length=photon_path_length,
-        camera_path_length=camera_path_length, radius_minimum=0.03, radius_maximum=0.03, filter_width=0.0,
-        specular_roughness=CUT, use_final_gather=False,
-        radius_scale=100.0,  # bounds the wide radius in pixels, which are few here
-    )  # fmt: skip
-    return Scene(
-        camera,
-        [mesh for mesh, _ in surfaces],
-        [Instance(index, np.eye(4), [index]) for index in range(len(surfaces))],
-        [material(mesh.name, lobe) for mesh, lobe in surfaces],
-        [light] if light else [],
-        settings=settings,
-    )
-
-
-def traced_only(scene: Scene, iterations: int, photons: int = 64) -> None:
-    """Where the camera's random numbers make the noise, pixels are cheaper than photons."""
-    scene.camera = dataclasses.replace(scene.camera, width=2 * SIZE, height=2 * SIZE)
-    scene.settings = scene.settings.with_values(iterations=iterations, photons=photons)
-
-
-def colored(values: np.ndarray, *colors: np.ndarray) -> np.ndarray:
-    """(H, W) of white surfaces to (H, W, 3) of colored ones."""
-    return values[..., None] * np.prod(colors, axis=0)
+def each_mode(names: Iterable[str], each_time: Callable[..., bool] = lambda *_: True) -> list:
+    """Names with either way to direct light as parameters of a test; with the long tests those of which it is not true
+    that they are tried each time."""
+    return [
+        pytest.param(
+            name, mode, id=f"{name}-{mode.value}", marks=[] if each_time(name, mode) else [pytest.mark.long]
+        )
+        for name in names
+        for mode in DirectLight
+    ]  # fmt: skip
 
 
 # --- a floor that the spot lights, and a wall that it does not -----------------------------------

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from path_classes import facing_down, level
 from path_quadrature import Spot
+from path_scenes import facing_down, level
 from support.lobes import Lobe, LobeKind
 
 from rppm_addon.scene import Mesh
@@ -43,10 +43,7 @@ def panes(slab: bool) -> list[tuple[Mesh, Lobe]]:
     """The faces of the glass, with their normals out of it."""
     glass = Lobe(LobeKind.GLASS, color=(1.0, 1.0, 1.0), ior=INDEX)
     if slab:
-        return [
-            (facing_down("bottom", SLAB[0], -2.0, 2.0), glass),
-            (level("top", SLAB[1], -2.0, 2.0, 2.0), glass),
-        ]
+        return [(facing_down("bottom", SLAB[0], -2.0, 2.0), glass), (level("top", SLAB[1], -2.0, 2.0, 2.0), glass)]
     return [(level("top", INTERFACE, -2.0, 2.0, 2.0), glass)]
 
 

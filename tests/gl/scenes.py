@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small scenes made of arrays, without Blender."""
 
+import dataclasses
+from collections.abc import Iterable
+
 import numpy as np
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene, World
+from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Material, Mesh, RenderSettings, Scene, World
 from rppm_addon.self_test.meshes import box_sides, looking, placed, rectangle, sphere
 from rppm_addon.self_test.meshes import polygons as polygons
 
@@ -13,12 +16,68 @@ def diffuse(*color: float) -> Material:
     return material("diffuse", Lobe(LobeKind.DIFFUSE, color=color))
 
 
+def square(name: str, half: float, z: float = 0.0) -> Mesh:
+    """A level square around the z axis that faces up."""
+    return rectangle(name, (-half, -half, z), (half, -half, z), (half, half, z), (-half, half, z))
+
+
+def box(name: str, half: float = 1.0) -> Mesh:
+    """A cube around the origin whose faces look outward."""
+    corners = half * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32)
+    return polygons(name, corners, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)])
+
+
+def inside_out(mesh: Mesh) -> Mesh:
+    turned = np.ascontiguousarray(mesh.triangle_corners[:, ::-1])
+    return dataclasses.replace(mesh, triangle_corners=turned, corner_normals=-mesh.corner_normals)
+
+
+def camera(eye: tuple, target: tuple, half: float, size: int, orthographic: bool = False) -> Camera:
+    """A camera of square pictures whose window is 2 half wide, at 1 m or where it is orthographic everywhere."""
+    return Camera(looking(eye, target), (-half, half, -half, half), size, size, orthographic)
+
+
+def sky_with_a_sun(rows: int, size: float) -> Image:
+    """A gray sky of so many rows that shines around one direction, over a part of its height squared."""
+    v, u = np.meshgrid((np.arange(rows) + 0.5) / rows, (np.arange(2 * rows) + 0.5) / (2 * rows), indexing="ij")
+    glow = 0.2 + 20 * np.exp(-((u - 0.5) ** 2 + (v - 0.75) ** 2) / size)
+    return Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))
+
+
+def floor_places(camera: Camera) -> np.ndarray:
+    """(H, W, 3) places that the middles of pixels of a perspective camera see of the plane z = 0."""
+    left, right, bottom, top = camera.window
+    x = left + (right - left) * (np.arange(camera.width) + 0.5) / camera.width
+    y = bottom + (top - bottom) * (np.arange(camera.height) + 0.5) / camera.height
+    rays = np.stack(np.broadcast_arrays(x, y[:, None], -1.0), -1) @ camera.matrix[:3, :3].T
+    return camera.matrix[:3, 3] - rays * (camera.matrix[2, 3] / rays[..., 2:])
+
+
+def scene_of(
+    camera: Camera,
+    *parts: tuple[Mesh, Material],
+    lights: Iterable[Light] = (),
+    world: World | None = None,
+    **settings: object,
+) -> Scene:
+    """Each mesh where its vertices are, with its material."""
+    return Scene(
+        camera, [mesh for mesh, _ in parts], [Instance(number, np.eye(4), [number]) for number in range(len(parts))],
+        [surface for _, surface in parts], list(lights), world or World(), settings=RenderSettings(**settings),
+    )  # fmt: skip
+
+
+def add(scene: Scene, mesh: Mesh, surface: Material, matrix: np.ndarray | None = None, **members: object) -> None:
+    """Put another mesh into a scene, with a material of its own; members: further ones of its instance."""
+    place, number = np.eye(4) if matrix is None else matrix, len(scene.materials)
+    scene.instances.append(Instance(len(scene.meshes), place, [number], **members))
+    scene.meshes.append(mesh)
+    scene.materials.append(surface)
+
+
 def room(size: int = 32, **settings: object) -> Scene:
     """An open box of side 2 with a glass and a mirror sphere and an area light below the ceiling."""
-    meshes = [
-        *box_sides()[:5],
-        sphere("ball"),
-    ]
+    meshes = [*box_sides()[:5], sphere("ball")]
     materials = [
         diffuse(0.75, 0.75, 0.75), diffuse(0.7, 0.1, 0.1), diffuse(0.1, 0.6, 0.1),
         material("glass", Lobe(LobeKind.GLASS, ior=1.5)),

@@ -5,29 +5,19 @@ import dataclasses
 
 import numpy as np
 
-from rppm_addon.scene import (
-    AovOutput,
+from rppm_addon.scene import Camera, DirectLight, Image, Light, LightKind, LightLinking, Material, RenderSettings, Scene
+from rppm_addon.scene.meshes import (
     AttributeDomain,
-    Camera,
-    CameraMovement,
-    Deformation,
-    DirectLight,
-    Image,
+    Dicing,
     Instance,
-    Light,
-    LightKind,
-    LightLinking,
-    Material,
     Mesh,
     MeshAttribute,
-    Movement,
-    NodeGraph,
+    MeshShape,
     Particle,
-    RenderSettings,
-    Scene,
-    Shutter,
+    RayVisibility,
 )
-from rppm_addon.scene.meshes import Dicing, MeshShape, RayVisibility
+from rppm_addon.scene.motion import CameraMovement, Deformation, Movement, Shutter
+from rppm_addon.scene.node_graphs import AovOutput, NodeGraph
 from support.lobes import Lobe, LobeKind, image_world, material
 
 

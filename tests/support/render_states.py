@@ -38,21 +38,25 @@ def assert_same_state(mine: RenderState, other: RenderState, *names: str) -> Non
             assert a == b, field.name
 
 
-def assert_goes_on(mapper: ProgressivePhotonMapper, scene: Scene, *names: str, iterations: int = 4) -> RenderState:
-    """A render that is begun anew from the state after two iterations ends as the one that was not, which it returns.
+def assert_goes_on(
+    mapper: ProgressivePhotonMapper,
+    scene: Scene,
+    *names: str,
+    iterations: int = 4,
+    stops: tuple[int, ...] = (2,),
+    other: ProgressivePhotonMapper | None = None,
+) -> RenderState:
+    """A render that is begun anew from the state after some iterations ends as the one that was not, which it returns.
 
-    names: fields of the states that must be equal, all by default.
+    names: fields of the states that must be equal, all by default; other: mapper that goes on, by default the same.
     """
     mapper.build(scene)
-    states = []
-    for _ in range(iterations):
-        mapper.iterate()
-        states.append(mapper.state())
-    mapper.build(scene)
-    mapper.resume(states[1])
-    for _ in range(iterations - 2):
-        mapper.iterate()
-    assert_same_state(mapper.state(), states[-1], *names)
+    states = [run_until(mapper, iteration) for iteration in range(1, iterations + 1)]
+    for stop in stops:
+        again = other or mapper
+        again.build(scene)
+        again.resume(states[stop - 1])
+        assert_same_state(run_until(again, iterations), states[-1], *names)
     return states[-1]
 
 

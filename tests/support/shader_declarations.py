@@ -38,11 +38,7 @@ class Variant:
     """Which kinds of nodes the graph has: the name of their file."""
 
     def expand(
-        self,
-        reads_texels: bool = False,
-        large: Collection[str] = (),
-        whole: bool = False,
-        beside: Source | None = None,
+        self, reads_texels: bool = False, large: Collection[str] = (), whole: bool = False, beside: Source | None = None
     ) -> Source:
         """Its text, with functions that nothing calls if it is to be whole; beside: the other stage of its program.
 

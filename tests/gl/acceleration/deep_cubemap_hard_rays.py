@@ -6,21 +6,10 @@ import numpy as np
 from rppm_addon.self_test.ray_queries import ray_records
 
 KINDS = (
-    "uniform",
-    "from the center",
-    "to the center",
-    "past the center",
-    "from near the center",
-    "along axes",
-    "in face borders",
-    "in face diagonals",
-    "at edges",
-    "at vertices",
-    "grazing",
-    "inside thin shells",
-    "from the surface",
-    "from outside",
-)
+    "uniform", "from the center", "to the center", "past the center", "from near the center", "along axes",
+    "in face borders", "in face diagonals", "at edges", "at vertices", "grazing", "inside thin shells",
+    "from the surface", "from outside",
+)  # fmt: skip
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

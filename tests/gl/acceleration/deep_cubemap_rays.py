@@ -4,15 +4,9 @@
 import numpy as np
 
 KINDS = (
-    "uniform",
-    "toward the center",
-    "past the center",
-    "from the center",
-    "from near the center",
-    "along axes",
-    "in cell borders",
-    "at edges and vertices",
-)
+    "uniform", "toward the center", "past the center", "from the center", "from near the center", "along axes",
+    "in cell borders", "at edges and vertices",
+)  # fmt: skip
 
 
 def _near(center: np.ndarray, rng: np.random.Generator, count: int) -> np.ndarray:

@@ -124,14 +124,8 @@ class Reference:
         """Hit records of Ray records."""
         assert rays.dtype == RAY.dtype
         hits = HIT.zeros(len(rays))
-        nearest, found, weights = _trace(
-            *self._nodes,
-            self._triangles,
-            np.ascontiguousarray(rays["origin"]),
-            np.ascontiguousarray(rays["direction"]),
-            np.ascontiguousarray(rays["maximum_distance"]),
-            np.ascontiguousarray(rays["source_triangle"]),
-            self._slack,
-        )
+        columns = (rays[name] for name in ("origin", "direction", "maximum_distance", "source_triangle"))
+        arrays = (np.ascontiguousarray(column) for column in columns)
+        nearest, found, weights = _trace(*self._nodes, self._triangles, *arrays, self._slack)
         hits["triangle"], hits["distance"], hits["b1"], hits["b2"] = found, nearest, weights[:, 0], weights[:, 1]
         return hits

@@ -18,6 +18,13 @@ CENTERS = {
     "inside the sphere": SPHERE_CENTER,
 }
 
+PLAIN = CENTERS["plain"]
+
+
+def bits(hits: np.ndarray) -> np.ndarray:
+    """(n, 4) words of HIT records."""
+    return hits.view(np.uint32).reshape(-1, 4)
+
 
 def grid_triangles(points: np.ndarray) -> np.ndarray:
     """Two triangles for each square of a (rows, columns, 3) grid of points."""
@@ -46,11 +53,8 @@ def sphere(center, radius: float, rings: int, bumps: float = 0.0) -> np.ndarray:
     latitude = np.linspace(0.0, np.pi, rings + 1)[:, None]
     longitude = np.linspace(0.0, 2 * np.pi, 2 * rings + 1)[None, :]
     longitude[0, -1] = 0.0  # exactly the first column, so that the seam is closed
-    x, y, z = (
-        np.sin(latitude) * np.cos(longitude),
-        np.cos(latitude) + 0 * longitude,
-        np.sin(latitude) * np.sin(longitude),
-    )
+    x, z = np.sin(latitude) * np.cos(longitude), np.sin(latitude) * np.sin(longitude)
+    y = np.cos(latitude) + 0 * longitude
     points = np.stack([x, y, z], -1)
     points[0], points[-1] = (0, 1, 0), (0, -1, 0)
     points *= (1 + bumps * np.sin(9 * x + 4 * y) * np.cos(11 * y - 5 * z))[..., None]
@@ -70,23 +74,13 @@ def torus(center, radius: float, tube: float, rings: int) -> np.ndarray:
 
 def furnished_room(divisions: int = 1) -> np.ndarray:
     """Room, pillar and table: few large triangles."""
-    return np.concatenate(
-        [
-            box((-1, -1, -1), (1, 1, 1), divisions),
-            box((0.1, -1, -0.6), (0.5, 0.2, -0.2)),
-            box((-0.9, -0.3, 0.3), (-0.2, TABLE_TOP, 0.8)),
-        ]
-    ).astype(np.float32)
+    pillar, table = box((0.1, -1, -0.6), (0.5, 0.2, -0.2)), box((-0.9, -0.3, 0.3), (-0.2, TABLE_TOP, 0.8))
+    return np.concatenate([box((-1, -1, -1), (1, 1, 1), divisions), pillar, table]).astype(np.float32)
 
 
 def room_with_meshes(triangle_count: int) -> np.ndarray:
     """The furnished room with a sphere, a torus and a bumpy sphere: about so many triangles."""
     rings = int(np.sqrt(triangle_count / 12))
-    return np.concatenate(
-        [
-            furnished_room(),
-            sphere(SPHERE_CENTER, 0.4, rings),
-            torus((0.5, 0.5, 0.3), 0.35, 0.12, rings),
-            sphere((0.45, -0.5, 0.5), 0.38, rings, bumps=0.15),
-        ]
-    ).astype(np.float32)
+    balls = sphere(SPHERE_CENTER, 0.4, rings), sphere((0.45, -0.5, 0.5), 0.38, rings, bumps=0.15)
+    meshes = balls[0], torus((0.5, 0.5, 0.3), 0.35, 0.12, rings), balls[1]
+    return np.concatenate([furnished_room(), *meshes]).astype(np.float32)

@@ -126,9 +126,8 @@ def read_structure(cubemap: DeepCubemap) -> Structure:
         x = (4 * x[divided][:, None] + (child & 3)).ravel()
         y = (4 * y[divided][:, None] + (child >> 2)).ravel()
     place, face, level, x, y = (np.concatenate(column) for column in zip(*levels))
-    assert len(np.unique(place)) == len(place) == state["root_count"] + 16 * state["tile_count"], (
-        "each tile must divide one cell"
-    )
+    # each tile divides one cell
+    assert len(np.unique(place)) == len(place) == state["root_count"] + 16 * state["tile_count"]
     cells = stored[place]
 
     content = cells["content"].astype(np.int64)
@@ -153,14 +152,8 @@ def read_structure(cubemap: DeepCubemap) -> Structure:
     taken = np.bincount(entry_place, minlength=len(packed))
     assert len(taken) == len(packed) and np.all(taken == 1), "the lists must share out the entries without overlap"
     entry = packed[entry_place]
-    columns = (
-        np.repeat(list_row, length),
-        np.repeat(list_bin, length),
-        entry[:, 0] & 0x3FFFFFFF,
-        entry[:, 0] >> 30,
-        entry[:, 1] & 0xFFFF,
-        entry[:, 1] >> 16,
-    )
+    columns = np.repeat(list_row, length), np.repeat(list_bin, length), entry[:, 0] & 0x3FFFFFFF, entry[:, 0] >> 30
+    columns += entry[:, 1] & 0xFFFF, entry[:, 1] >> 16
     entries = np.stack([c.astype(np.int64) for c in columns], 1)
     return Structure(state, cells, face, level, x, y, kind, np.concatenate(children), bin_counts, entries)
 

@@ -129,7 +129,6 @@ def test_hits_of_the_bvh_equal_those_of_the_deep_cubemap(context, library, tmp_p
                 missed += np.count_nonzero(np.any(bits(others[different]) != bits(truth), axis=1))
             np.testing.assert_array_equal(by_bvh.occluded(rays) == 0, others["triangle"] != NO_TRIANGLE)
             number += len(rays)
-    print(f"\n{name}: {missed} of {number} hits are missed by the BVH")
     assert missed <= 1e-4 * number
 
 
@@ -160,7 +159,6 @@ def test_hits_equal_those_of_boxes(context, library, tmp_path, name):
                 number += len(rays)
                 found += np.count_nonzero(occluded)
     volumes.release()
-    print(f"\n{name}: {len(triangles)} triangles, {number} rays, {found} hits, {by_boxes} missed by the boxes")
     assert not wrong, "\n".join([f"{len(wrong)} hits differ", *wrong[:10]])
     assert found > 0.2 * number
     assert by_boxes <= 1e-4 * number
@@ -260,5 +258,4 @@ def test_differences_from_float64_are_explained(context, library, name, count):
                 assert reason, f"{kind}: {rays[i]} hits {hits[i]}, in float64 {expected[i]} at {distances[i]}"
                 reasons[reason] += 1
             number += count
-    print(f"\n{name}, {number} rays: {dict(reasons)}")
     assert reasons.total() < 0.2 * number

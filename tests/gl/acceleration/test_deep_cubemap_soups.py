@@ -17,6 +17,16 @@ grid = st.integers(-4, 4).map(lambda i: i / 4)
 triangles_on_grid = st.integers(1, 12).flatmap(lambda n: arrays.arrays(np.float32, (n, 3, 3), elements=grid))
 points_on_grid = arrays.arrays(np.float32, (32, 3), elements=grid)
 resolutions = st.sampled_from([4, 8, 16, 64])
+ODD = ["sliver", "huge", "needle", "duplicate", "point", "line", "plain"]
+
+
+def tried(count: int):
+    """So many examples, the same each time."""
+    return settings(max_examples=count, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+
+
+def vectors(shape, least: int, most: int):
+    return arrays.arrays(np.float32, shape, elements=st.floats(least, most, width=32))
 
 
 def check(context, library, triangles, center, origins, targets, resolution):
@@ -34,20 +44,14 @@ def check(context, library, triangles, center, origins, targets, resolution):
     np.testing.assert_array_equal(free, ~hit)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@tried(150)
 @given(triangles_on_grid, arrays.arrays(np.float32, 3, elements=grid), points_on_grid, points_on_grid, resolutions)
 def test_soups_about_any_grid_point(context, library, triangles, center, origins, targets, resolution):
     check(context, library, triangles, center, origins, targets, resolution)
 
 
-@settings(max_examples=50, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(
-    triangles_on_grid,
-    arrays.arrays(np.float32, 3, elements=st.floats(-1, 1, width=32)),
-    arrays.arrays(np.float32, (32, 3), elements=st.floats(-2, 2, width=32)),
-    points_on_grid,
-    resolutions,
-)
+@tried(50)
+@given(triangles_on_grid, vectors(3, -1, 1), vectors((32, 3), -2, 2), points_on_grid, resolutions)
 def test_soups_about_any_point(context, library, triangles, center, origins, targets, resolution):
     check(context, library, triangles, center, origins, targets, resolution)
 
@@ -56,13 +60,7 @@ def test_soups_about_any_point(context, library, triangles, center, origins, tar
 def hard_triangles(draw):
     """Slivers, huge triangles, needles through the center, duplicates, degenerate ones; and the center."""
     seed = draw(st.integers(0, 2**32 - 1))
-    kinds = draw(
-        st.lists(
-            st.sampled_from(["sliver", "huge", "needle", "duplicate", "point", "line", "plain"]),
-            min_size=1,
-            max_size=14,
-        )
-    )
+    kinds = draw(st.lists(st.sampled_from(ODD), min_size=1, max_size=14))
     place = draw(st.sampled_from(["anywhere", "vertex", "edge", "plane"]))
     rng = np.random.default_rng(seed)
     center = rng.uniform(-0.5, 0.5, 3).astype(np.float32)
@@ -90,7 +88,7 @@ def hard_triangles(draw):
     return triangles, center, rng
 
 
-@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@tried(150)
 @given(hard_triangles(), st.sampled_from([0, 4, 64, 1024]))
 def test_soups_of_hard_triangles(context, library, scene, resolution):
     triangles, center, rng = scene

@@ -5,18 +5,17 @@ import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.scene import Camera, Instance, RenderSettings, Scene
+from rppm_addon.scene import Camera
 
 
-def looking_down(meshes, orthographic=False, width=40, height=30):
+def looking_down(meshes, orthographic=False):
     """At the plane z = 0 from 2 m above, 4 x 3 m of it."""
     window = (-2.0, 2.0, -1.5, 1.5) if orthographic else (-1.0, 1.0, -0.75, 0.75)
-    camera = Camera(scenes.placed(0, 0, 2), window, width, height, orthographic)
-    instances = [Instance(index, np.eye(4), [0]) for index in range(len(meshes))]
-    return Scene(camera, meshes, instances, [scenes.diffuse(1, 1, 1)], settings=RenderSettings())
+    camera = Camera(scenes.placed(0, 0, 2), window, 40, 30, orthographic)
+    return scenes.scene_of(camera, *((mesh, scenes.diffuse(1, 1, 1)) for mesh in meshes))
 
 
-SQUARE = scenes.rectangle("square", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
+SQUARE = scenes.square("square", 1.0)
 
 
 @pytest.mark.parametrize("orthographic", [False, True])

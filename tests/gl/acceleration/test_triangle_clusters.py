@@ -1,28 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangles that stand in the lists of the deep cubemap together, as they do in scenes of many."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 import scenes
 from deep_cubemap_hard_rays import KINDS, HardRays
-from deep_cubemap_scenes import CENTERS, furnished_room, room_with_meshes
+from deep_cubemap_scenes import PLAIN, bits, furnished_room, room_with_meshes
 from deep_cubemap_structure import read_structure
-from moving_scenes import everything_moves
+from moving_scenes import everything_moves, films_of_moved
 
 from rppm_addon.integrator.deep_cubemap import clusters
 from rppm_addon.integrator.deep_cubemap.clusters import Clusters
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.scene import AccelerationStructure
-from rppm_addon.self_test.meshes import placed
 from rppm_addon.self_test.ray_queries import TracedTriangles
-
-PLAIN = CENTERS["plain"]
-
-
-def bits(hits: np.ndarray) -> np.ndarray:
-    return hits.view(np.uint32).reshape(-1, 4)
 
 
 def clusters_of(cubemap: DeepCubemap) -> tuple[np.ndarray, np.ndarray]:
@@ -100,20 +91,8 @@ def test_pictures_are_the_same(mapper, other_mapper, monkeypatch):
         acceleration_structure=AccelerationStructure.DEEP_CUBEMAP,
     )  # fmt: skip
     scene = everything_moves(room, 1.0)
-    moved = dataclasses.replace(scene, instances=[*scene.instances])
-    moved.instances[8] = dataclasses.replace(moved.instances[8], matrix=placed(-0.5, 0.4, 0.1, 0.3))
-
-    def films(mapper):
-        found = []
-        for update in (mapper.build, mapper.update):
-            update(scene if update == mapper.build else moved)
-            mapper.iterate()
-            found.append(mapper.film.read_radiance())
-        return found
-
-    expected = films(mapper)
+    expected = films_of_moved(mapper, scene)
     monkeypatch.setattr(clusters, "SCENE_CLUSTER_SIZES", {1: 4})
-    for found, film in zip(films(other_mapper), expected):
-        np.testing.assert_array_equal(found, film)
+    np.testing.assert_array_equal(films_of_moved(other_mapper, scene), expected)
     assert other_mapper.deep_cubemap.counts["fragment"] < mapper.deep_cubemap.counts["fragment"]
     assert not np.array_equal(*expected)

@@ -5,6 +5,7 @@ A photon counts where it arrived on the importon's side, with normals at most 45
 off the importon's tangent plane (shaders/common/importon.glsl); test_closed_shells.py has the rest.
 """
 
+import dataclasses
 import itertools
 import math
 
@@ -14,29 +15,16 @@ import scenes
 from support.families import some_each_time
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Instance,
-    Light,
-    LightKind,
-    Mesh,
-    RayVisibility,
-    RenderSettings,
-    Scene,
-    World,
-)
+from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Mesh, RayVisibility, RenderSettings, Scene, World
+from rppm_addon.scene.camera import Camera
 
 STEADY = 0.999999  # alpha of a radius that hardly shrinks
 
 
 def settings(radius: float, segments: int = 1, **others: object) -> RenderSettings:
-    values = RenderSettings(
-        iterations=4, photons=16384, direct_light=DirectLight.PHOTONS, alpha=STEADY, filter_width=0.0
-    )
-    return values.with_values(
-        radius_minimum=radius, radius_maximum=radius, photon_path_length=segments, **{"camera_path_length": 1} | others
-    )
+    values = {"iterations": 4, "photons": 16384, "direct_light": DirectLight.PHOTONS, "alpha": STEADY}
+    values |= {"radius_minimum": radius, "radius_maximum": radius, "filter_width": 0.0, "camera_path_length": 1}
+    return RenderSettings(**values | {"photon_path_length": segments} | others)
 
 
 def photons_for(radius: float) -> int:
@@ -45,9 +33,7 @@ def photons_for(radius: float) -> int:
 
 
 def view(position: tuple, target: tuple, half: float, size: int = 32) -> Camera:
-    camera = Camera(scenes.looking(position, target), (-half, half, -half, half), size, size, True)
-    camera.clip_start = 1e-5
-    return camera
+    return dataclasses.replace(scenes.camera(position, target, half, size, True), clip_start=1e-5)
 
 
 def sheet(name: str, low: tuple[float, float], high: tuple[float, float], z: float = 0.0) -> Mesh:
@@ -57,9 +43,7 @@ def sheet(name: str, low: tuple[float, float], high: tuple[float, float], z: flo
 
 
 def box(name: str, half: float, inwards: bool = False) -> Mesh:
-    corners = half * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return scenes.polygons(name, corners, [face[::-1] for face in faces] if inwards else faces)
+    return scenes.inside_out(scenes.box(name, half)) if inwards else scenes.box(name, half)
 
 
 def sun(*toward: float) -> Light:
@@ -68,13 +52,8 @@ def sun(*toward: float) -> Light:
 
 
 def point_light(*place: float, color: tuple = (1, 1, 1)) -> Light:
-    return Light(
-        "light",
-        LightKind.POINT,
-        scenes.placed(*place),
-        np.array(color, float),
-        visibility=RayVisibility.ALL ^ RayVisibility.CAMERA,
-    )
+    unseen = RayVisibility.ALL ^ RayVisibility.CAMERA
+    return Light("light", LightKind.POINT, scenes.placed(*place), np.array(color, float), visibility=unseen)
 
 
 def scene_of(camera: Camera, meshes: list[Mesh], lights: list[Light], settings: RenderSettings) -> Scene:
@@ -98,9 +77,8 @@ def test_a_closed_box_with_walls_of_a_millimeter_is_black_outside(renderer, dire
     scene.materials[0] = scenes.diffuse(0.9, 0.9, 0.9)
     if mirrored:
         scene.camera.matrix = scenes.looking((2, 0, 0), (3, 0, 0))
-        scene.meshes.append(scenes.rectangle("mirror", (4, -2, -2), (4, -2, 2), (4, 2, 2), (4, 2, -2)))
-        scene.materials.append(material("mirror", Lobe(LobeKind.GLOSSY)))
-        scene.instances.append(Instance(2, np.eye(4), [1]))
+        surface = material("mirror", Lobe(LobeKind.GLOSSY))
+        scenes.add(scene, scenes.rectangle("mirror", (4, -2, -2), (4, -2, 2), (4, 2, 2), (4, 2, -2)), surface)
     assert (picture(renderer, scene) == 0).all()
     scene.camera = view((0.3, 0.3, 0.3), (-1, 0.3, -0.5), 0.1)
     assert (picture(renderer, scene) > 0).mean() > 0.99  # what the walls hide
@@ -128,7 +106,6 @@ def test_sheets_a_millimeter_apart(renderer, radius, leaks):
     assert (seen(0.0005, 1) == 0).all()  # the upper sheet from below
     assert (seen(-1, 0) == 0).all()  # the lower sheet from below
     between = seen(0.0005, 0).mean() * math.pi
-    print(f"radius {radius}: the lower sheet's top gets {between:.4f} of the upper one's light")
     assert (between > 0.1) if leaks else (between == 0)
 
 
@@ -162,8 +139,6 @@ def test_a_floor_is_darkened_at_its_rim_and_in_corners(renderer, radius, corner)
     distance = (np.arange(32) + 0.5) / 32
     expected = 1 - marginal(distance / radius)
     profile, error = floor.mean(0), floor.std(0, ddof=1) / np.sqrt(32)
-    lost = (1 - profile).mean() / radius
-    print(f"radius {radius}: rim {profile[0]:.4f}, lost {lost:.4f} radii; in closed form {8 / (15 * np.pi):.4f}")
     # Splats make the rows of a column alike over a radius: that many fewer are independent.
     alike = np.sqrt(1 + 32 * radius)
     assert (abs(profile - expected) < 4 * error * alike + 1e-3).all()
@@ -207,7 +182,6 @@ def test_faces_that_meet_at_a_shallow_edge(renderer, radius, lit):
     area = (0.35 * radius / sine / 400) * (2 * radius / 400)
     kernel = 2 * np.maximum(1 - chord2 / radius**2, 0) / (np.pi * radius**2)
     expected = 1 - marginal(away / radius) + kernel.sum((1, 2)) * area
-    print(f"radius {radius}: at the edge {profile[0]:.4f}, predicted {expected[0]:.4f}; mean {profile.mean():.4f}")
     assert (abs(profile - expected) < 6 * error.mean() + 1e-3).all()
 
 
@@ -258,5 +232,4 @@ def test_a_ball_is_estimated_as_its_closed_form_tells(renderer, light, radius):
         means.append(image.mean())
     mean, error = np.mean(means), np.std(means, ddof=1) / math.sqrt(len(means))
     expected = ball_estimate(radius, light == "world")
-    print(f"{light} radius {radius}: {mean:.4f} +- {error:.4f}, closed form {expected:.4f}")
     assert abs(mean - expected) < 4 * error + 2e-3  # facets of 3 degrees

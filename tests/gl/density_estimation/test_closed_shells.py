@@ -75,7 +75,6 @@ def test_a_thin_white_box_keeps_its_light(renderer):
         scene.camera = view((0, 0, 0.02), (0, 0, 0), 0.08)
         means.append(picture(renderer, scene).mean())
     error = np.std(means, ddof=1) / math.sqrt(len(means))
-    print(f"{np.mean(means):.4f} +- {error:.4f}")
     # The t distribution of few seeds.
     assert abs(np.mean(means) - 2.0) < 6 * error + 0.002
 
@@ -91,7 +90,6 @@ def test_a_card_close_to_the_floor_darkens_neither(renderer, gap):
         options = settings(0.1, photons=8192, iterations=2, seed=seed)
         means.append(picture(renderer, scene_of(camera, meshes, [sun(0, 0, -1)], options))[..., 0].mean(0) * math.pi)
     profile, error = np.mean(means, 0), np.std(means, axis=0, ddof=1) / math.sqrt(8)
-    print(np.round(profile, 3), np.round(error.mean(), 4))
     # Photons a gap off count by the kernel of a longer way: 2 (1 - (x^2 + gap^2) / r^2).
     assert (abs(profile - 1.0) < 5 * error.mean() + (gap / 0.1) ** 2).all()
 

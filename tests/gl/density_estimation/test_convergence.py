@@ -23,7 +23,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.integrator.density_estimation.radii import shrinkage
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RayVisibility, RenderSettings, Scene
+from rppm_addon.scene import Camera, DirectLight, Light, LightKind, Material, Mesh, RayVisibility, Scene
 
 CHECKPOINTS = (1, 2, 4, 8, 16, 32, 64)
 SLOPE = slice(CHECKPOINTS.index(4), None)
@@ -40,31 +40,26 @@ def mapper(context, library):
 
 
 def camera_down(height: float, half_width: float, size: int) -> Camera:
-    return Camera(
-        scenes.looking((0, 0, height), (0, 0, 0)), (-half_width, half_width, -half_width, half_width), size, size, True
-    )
+    return scenes.camera((0, 0, height), (0, 0, 0), half_width, size, True)
 
 
-def floor(half_width: float) -> Mesh:
-    h = half_width
-    return scenes.rectangle("floor", (-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0))
+def settings(photons: int, radius: float, alpha: float, segments: int) -> dict[str, object]:
+    return {
+        "photons": photons, "direct_light": DirectLight.PHOTONS, "photon_path_length": segments, "alpha": alpha,
+        "camera_path_length": 1, "radius_minimum": radius, "radius_maximum": radius, "filter_width": 0.0,
+    }  # fmt: skip
 
 
-def settings(photons: int, radius: float, alpha: float, segments: int) -> RenderSettings:
-    return RenderSettings(
-        photons=photons, direct_light=DirectLight.PHOTONS, photon_path_length=segments, camera_path_length=1,
-        radius_minimum=radius, radius_maximum=radius, filter_width=0.0, alpha=alpha,
-    )  # fmt: skip
+def white_floor(half_width: float) -> tuple[Mesh, Material]:
+    return scenes.square("floor", half_width), scenes.diffuse(1, 1, 1)
 
 
 def lit_floor(light_radius: float, photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scene:
     """A light 1 m above a floor: E = pi (1 + x^2)^-1.5, whatever the light's radius."""
     light = Light("light", LightKind.POINT, scenes.placed(0, 0, 1), np.full(3, np.pi), radius=light_radius)
     light.visibility ^= RayVisibility.CAMERA
-    return Scene(
-        camera_down(3, 0.8, size), [floor(4)], [Instance(0, np.eye(4), [0])], [scenes.diffuse(1, 1, 1)], [light],
-        settings=settings(photons, radius, alpha, 1),
-    )  # fmt: skip
+    options = settings(photons, radius, alpha, 1)
+    return scenes.scene_of(camera_down(3, 0.8, size), white_floor(4.0), lights=[light], **options)
 
 
 def floor_radiance(distance: np.ndarray) -> np.ndarray:
@@ -91,10 +86,8 @@ def lens(photons: int, radius: float, alpha: float = 0.7, size: int = 8) -> Scen
     sheet = Mesh("lens", positions, vertices, normals.astype(np.float32), triangles, slots)
     glass = material("glass", Lobe(LobeKind.REFRACTION, ior=LENS_INDEX))
     sun = Light("sun", LightKind.SUN, scenes.placed(0, 0, 4), np.ones(3))
-    return Scene(
-        camera_down(0.3, 0.08, size), [floor(LENS_HALF), sheet], [Instance(i, np.eye(4), [i]) for i in (0, 1)],
-        [scenes.diffuse(1, 1, 1), glass], [sun], settings=settings(photons, radius, alpha, 2),
-    )  # fmt: skip
+    parts, options = (white_floor(LENS_HALF), (sheet, glass)), settings(photons, radius, alpha, 2)
+    return scenes.scene_of(camera_down(0.3, 0.08, size), *parts, lights=[sun], **options)
 
 
 def lens_landing(entry: np.ndarray) -> np.ndarray:
@@ -122,22 +115,11 @@ def bounce(photons: int, alpha: float = 0.7) -> Scene:
 
     The wide radius is a twentieth of the diagonal, 0.28 m, at first, as ``radius_scale`` bounds it no further.
     """
-    ceiling = scenes.rectangle("ceiling", (-1, -1, CEILING), (-1, 1, CEILING), (1, 1, CEILING), (1, -1, CEILING))
-    up = scenes.looking((0, 0, SPOT), (0, 0, 1))
-    light = Light(
-        "spot",
-        LightKind.SPOT,
-        up,
-        np.ones(3),
-        spot_angle=np.pi / 2,
-        visibility=RayVisibility.ALL ^ RayVisibility.CAMERA,
-    )
-    options = settings(photons, 0.01, alpha, 2)
-    options.radius_scale = 1000.0
-    return Scene(
-        camera_down(0.3, 0.3, 8), [floor(2), ceiling], [Instance(i, np.eye(4), [0]) for i in (0, 1)],
-        [scenes.diffuse(1, 1, 1)], [light], settings=options,
-    )  # fmt: skip
+    ceiling = scenes.inside_out(scenes.square("ceiling", 1.0, CEILING)), scenes.diffuse(1, 1, 1)
+    light = Light("spot", LightKind.SPOT, scenes.looking((0, 0, SPOT), (0, 0, 1)), np.ones(3), spot_angle=np.pi / 2)
+    light.visibility ^= RayVisibility.CAMERA
+    options = settings(photons, 0.01, alpha, 2) | {"radius_scale": 1000.0}
+    return scenes.scene_of(camera_down(0.3, 0.3, 8), white_floor(2.0), ceiling, lights=[light], **options)
 
 
 def _ceiling_light(distance: np.ndarray) -> np.ndarray:
@@ -236,7 +218,6 @@ def resampled(runs: np.ndarray) -> list[np.ndarray]:
 
 
 def assert_slope(measured: float, deviation: float, expected: float, limit: float) -> None:
-    print(f"slope {measured:.3f} +- {deviation:.3f}, predicted {expected:.3f}, limit {limit:.3f}")
     assert deviation < 0.1  # enough photons to tell
     assert abs(measured - expected) < 4 * deviation
 
@@ -251,8 +232,6 @@ def assert_bias(means: np.ndarray, exact: np.ndarray, bias: np.ndarray, alpha: f
     share = ((means - exact) * bias).sum((2, 3)) / (bias**2).sum((1, 2))
     mean, error = share.mean(0), share.std(0, ddof=1) / np.sqrt(len(share))
     size = np.sqrt((bias**2).mean((1, 2))) / exact.mean()
-    for n, *row in zip(CHECKPOINTS, size, mean, error, strict=True):
-        print("N {:3d}: predicted bias {:.4%} of the radiance; measured over it {:.4f} +- {:.4f}".format(n, *row))
     assert error[-1] < 0.05  # enough photons to tell
     assert (abs(mean - 1) < surely(len(share)) * error).all()
     slopes = np.std([slope(size * some.mean(0)) for some in resampled(share)])
@@ -263,8 +242,6 @@ def assert_variance(means: np.ndarray, expected: np.ndarray, alpha: float) -> No
     """The variance is that of independent photons at each N, and its slope is theirs, within 4 bootstrap deviations."""
     others = [variance(some) for some in resampled(means)]
     measured, deviation = variance(means), np.std(others, axis=0)
-    print("variance over that of independent photons", np.round(measured / expected, 3))
-    print("+-", np.round(deviation / expected, 3))
     assert (abs(measured - expected) < 4 * deviation).all()
     assert_slope(slope(measured), np.std([slope(other) for other in others]), slope(expected), -alpha)
 
@@ -292,7 +269,6 @@ def test_bias_of_direct_light(mapper, alpha):
     bias = predicted_bias(floor_radiance, points, radii)
     leading = 0.5 * SECOND_MOMENT * laplacian(floor_radiance, points) * radii[0] ** 2
     ratio = (bias[0] * leading).sum() / (leading**2).sum()
-    print("bias of the first iteration over its leading term", ratio)
     assert abs(ratio - 1) < radii[0] ** 2  # the next order
     assert_bias(means, floor_radiance(np.linalg.norm(points, axis=-1)), bias, alpha)
 
@@ -313,7 +289,6 @@ def test_bias_of_interreflection(mapper, monkeypatch):
     scene = bounce(4096)
     points = pixel_points(scene)
     means, _, radii = running_means(mapper, scene, 8)
-    print("wide radius", radii[0], radii[-1])
     bias = predicted_bias(bounce_radiance, points, radii)
     assert_bias(means, bounce_radiance(np.linalg.norm(points, axis=-1)), bias, 0.7)
 
@@ -342,14 +317,11 @@ def test_total_error_of_interreflection(mapper, monkeypatch):
     scene = bounce(2048)
     points = pixel_points(scene)
     means, squares, radii = running_means(mapper, scene, 16)
-    print("wide radius", radii[0], radii[-1])
     noise = predicted_variance(scene, bounce_radiance, squares, radii)
     assert_variance(means, noise, 0.7)
     bias2 = (predicted_bias(bounce_radiance, points, radii) ** 2).mean((1, 2))
     squared = ((means - bounce_radiance(np.linalg.norm(points, axis=-1))) ** 2).mean((2, 3))
     measured, error = squared.mean(0), squared.std(0, ddof=1) / np.sqrt(len(squared))
     expected = bias2 + noise
-    print("squared error over that of theory", np.round(measured / expected, 3), "+-", np.round(error / expected, 3))
-    print("share of the bias", np.round(bias2 / expected, 3))
     assert (bias2 > 0.1 * expected).all() and (noise > 0.1 * expected).all()
     assert (abs(measured - expected) < surely(len(squared)) * error).all()

@@ -7,13 +7,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import pytest
 import scenes
-from busy_scenes import (
-    HEIGHT,
-    SCENES,
-    WIDTH,
-    busy,
-    wide,
-)
+from busy_scenes import HEIGHT, SCENES, WIDTH, busy, wide
+from rendering import iterated, radiance_of
 from support.floor import floor_scene
 from support.lobes import Lobe, LobeKind, material
 
@@ -22,10 +17,7 @@ from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
 from rppm_addon.integrator.common.records.photons import PHOTON_CONTRIBUTED
 from rppm_addon.integrator.density_estimation import density_estimator
 from rppm_addon.integrator.density_estimation.density_estimator import DensityEstimator
-from rppm_addon.scene import (
-    DensityEstimation,
-    Scene,
-)
+from rppm_addon.scene import DensityEstimation, Scene
 
 ITERATIONS = 3
 
@@ -64,14 +56,10 @@ def test_both_routes_give_the_same_bits(mapper, monkeypatch, name, rows):
         assert rasterized[5].sum() > 50, "next to no photon was taken: the test shows nothing"
 
 
-@pytest.fixture
-def undecided(monkeypatch):
+@pytest.mark.parametrize("rasterized_takes", [0.5, 2.0])
+def test_the_faster_route_is_taken_and_kept(mapper, other_mapper, monkeypatch, rasterized_takes):
     monkeypatch.setattr(density_estimator, "_faster", WeakKeyDictionary())
     monkeypatch.setattr(density_estimator, "_may_rasterize", lambda context: True)
-
-
-@pytest.mark.parametrize("rasterized_takes", [0.5, 2.0])
-def test_the_faster_route_is_taken_and_kept(mapper, other_mapper, monkeypatch, undecided, rasterized_takes):
     monkeypatch.setattr(density_estimator, "_FEWEST_TO_TRY", 100)
     expected = rendered(mapper, busy(), DensityEstimation.RASTERIZED)
     tried = []
@@ -93,28 +81,17 @@ def test_the_faster_route_is_taken_and_kept(mapper, other_mapper, monkeypatch, u
     assert (photons[-1] == max(count for _, count in tried)) == (faster is DensityEstimation.RASTERIZED)
     assert photons == sorted(photons)
     tried.clear()
-    other_mapper.build(wide(scenes.room(8, photons=2000)))
-    other_mapper.iterate()
+    iterated(other_mapper, wide(scenes.room(8, photons=2000)))
     assert not tried and other_mapper.density_estimation is faster
     for each in (mapper, other_mapper):
         assert ("splat jobs" in each.memory_bytes) == (faster is DensityEstimation.RASTERIZED)
         assert ("sorted photons" in each.memory_bytes) == (faster is DensityEstimation.GRID)
 
 
-def test_nothing_is_tried_with_next_to_nothing(mapper, monkeypatch, undecided):
-    monkeypatch.setattr(DensityEstimator, "_seconds", lambda *_: pytest.fail("both were tried"))
-    mapper.build(wide(scenes.room(8, photons=500)))
-    mapper.iterate()
-    assert mapper.density_estimation is DensityEstimation.GRID
-
-
-def test_nothing_is_tried_where_no_unit_rasterizes(mapper, monkeypatch, undecided):
-    monkeypatch.setattr(density_estimator, "_may_rasterize", lambda context: False)
-    monkeypatch.setattr(density_estimator, "_FEWEST_TO_TRY", 100)
-    monkeypatch.setattr(DensityEstimator, "_seconds", lambda *_: pytest.fail("both were tried"))
-    mapper.build(busy())
-    mapper.iterate()
-    assert mapper.density_estimation is DensityEstimation.GRID
+def test_software_drivers_gather(mapper):
+    if not mapper.context.is_software:
+        pytest.skip("the device is no software driver")
+    assert iterated(mapper, busy()).density_estimation is DensityEstimation.GRID
 
 
 @pytest.mark.parametrize("route", [DensityEstimation.RASTERIZED, DensityEstimation.GRID])
@@ -126,8 +103,6 @@ def test_light_that_is_taken_away_has_the_bits_of_light(mapper, route):
         scene.materials[0] = material("dark", Lobe(LobeKind.DIFFUSE, color=(1e-4, 1e-5, 1e-6)))
         scene.lights[0].strength = sign * scene.lights[0].strength
         scene.settings = scene.settings.with_values(direct_light="PHOTONS", density_estimation=route)
-        mapper.build(scene)
-        mapper.iterate()
-        pictures.append(mapper.film.read_radiance()[..., :3])
+        pictures.append(radiance_of(mapper, scene)[..., :3])
     assert pictures[0].any()
     np.testing.assert_array_equal(-pictures[1], pictures[0])

@@ -6,56 +6,52 @@ import math
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common.records.importons import IMPORTON
-from rppm_addon.scene import Camera, Image, Instance, Light, LightKind, Mesh, RenderSettings, Scene
+from rppm_addon.scene import Camera, Image, Light, LightKind, Material, Mesh, Scene
 
 SIZE = 24
 TANGENT = 0.4  # of half the vertical aperture
 
 
+SUN = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
+UNBOUND = {"photons": 64, "filter_width": 0.0, "radius_minimum": 1e-9, "radius_maximum": 1e9}
+
+
 def tilted_view(orthographic: bool, segments: int) -> Scene:
     """A camera that sees a mirror on the left and a floor, and the floor in the mirror."""
-    floor = scenes.rectangle("floor", (-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0))
-    mirror = scenes.rectangle("mirror", (-1, -9, 0), (-1, 9, 0), (-1, 9, 9), (-1, -9, 9))
-    half = TANGENT if not orthographic else 2.0
-    camera = Camera(scenes.looking((1, 0.3, 3), (0, 0, 0)), (-half, half, -half, half), SIZE, SIZE, orthographic)
-    materials = [scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))]
-    sun = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
-    settings = RenderSettings(
-        photons=64, filter_width=0.0, radius_minimum=1e-9, radius_maximum=1e9, camera_path_length=segments
-    )
-    instances = [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])]
-    return Scene(camera, [floor, mirror], instances, materials, [sun], settings=settings)
+    wall = scenes.rectangle("mirror", (-1, -9, 0), (-1, 9, 0), (-1, 9, 9), (-1, -9, 9))
+    floor, mirror = scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))
+    camera = scenes.camera((1, 0.3, 3), (0, 0, 0), 2.0 if orthographic else TANGENT, SIZE, orthographic)
+    parts = (scenes.square("floor", 9.0), floor), (wall, mirror)
+    return scenes.scene_of(camera, *parts, lights=[SUN], camera_path_length=segments, **UNBOUND)
+
+
+def rays_beside(camera: Camera, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Origins and directions (..., 3) of rays through points of the window."""
+    right, up, forward = camera.matrix[:3, 0], camera.matrix[:3, 1], -camera.matrix[:3, 2]
+    aside = x[..., None] * right + y[..., None] * up
+    if camera.orthographic:
+        return camera.matrix[:3, 3] + aside, np.broadcast_to(forward, aside.shape)
+    ray = forward + aside
+    return np.broadcast_to(camera.matrix[:3, 3], aside.shape), ray / np.linalg.norm(ray, axis=-1, keepdims=True)
+
+
+def importons_of(mapper, scene: Scene) -> np.ndarray:
+    """IMPORTON records of the first iteration, those of the last segment."""
+    return iterated(mapper, scene).stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
 
 
 @pytest.mark.parametrize("orthographic", [False, True])
 def test_radii_are_those_of_equations_3_and_4(mapper, orthographic):
-    scene = tilted_view(orthographic, 1)
-    mapper.build(scene)
-    mapper.iterate()
-    direct = mapper.stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
-    scene.settings.camera_path_length = 2
-    mapper.build(scene)
-    mapper.iterate()
-    mirrored = mapper.stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
-
-    camera = scene.camera
-    scale = 10.0 * SIZE / 1024
-    fraction = (np.arange(SIZE) + 0.5) / SIZE
-    half = camera.window[1]
-    x, y = np.meshgrid(half * (2 * fraction - 1), half * (2 * fraction - 1))
-    right, up, forward = camera.matrix[:3, 0], camera.matrix[:3, 1], -camera.matrix[:3, 2]
-    aside = x[..., None] * right + y[..., None] * up
-    if orthographic:
-        origin, ray = camera.matrix[:3, 3] + aside, np.broadcast_to(forward, aside.shape)
-    else:
-        ray = forward + aside
-        origin, ray = camera.matrix[:3, 3], ray / np.linalg.norm(ray, axis=-1, keepdims=True)
-    to_floor = (-origin[..., 2] / ray[..., 2]).reshape(-1)
-    to_mirror = ((-1 - origin[..., 0]) / ray[..., 0]).reshape(-1)
-    ray = ray.reshape(-1, 3)
+    direct, mirrored = (importons_of(mapper, tilted_view(orthographic, segments)).copy() for segments in (1, 2))
+    camera = tilted_view(orthographic, 1).camera
+    scale, half, forward = 10.0 * SIZE / 1024, camera.window[1], -camera.matrix[:3, 2]
+    side = half * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
+    origin, ray = (vectors.reshape(-1, 3) for vectors in rays_beside(camera, *np.meshgrid(side, side)))
+    to_floor, to_mirror = -origin[:, 2] / ray[:, 2], (-1 - origin[:, 0]) / ray[:, 0]
     front = ray @ forward
     on_floor, on_mirror = direct["radius"] > 0, mirrored["radius"] > 0
     assert on_floor.sum() > 50 and on_mirror.sum() > 50 and not (on_floor & on_mirror).any()
@@ -108,6 +104,12 @@ class Ball:
         return distance, (offset + distance[..., None] * ray) / self.radius
 
 
+def mirroring_ball() -> tuple[Ball, Mesh]:
+    mesh = scenes.sphere("ball", 512, 256)
+    mesh.positions = (mesh.positions * 0.5 + np.array([3, 0, 2])).astype(np.float32)
+    return Ball((3, 0, 2), 0.5), mesh
+
+
 def trace(origin: np.ndarray, ray: np.ndarray, surfaces: list) -> tuple[np.ndarray, list, list]:
     """Rays along a chain in float64: landing points, and each surface's segment length and cosine, (...,)."""
     lengths, cosines = [], []
@@ -126,38 +128,28 @@ def trace(origin: np.ndarray, ray: np.ndarray, surfaces: list) -> tuple[np.ndarr
     return origin, lengths, cosines
 
 
+def chain_materials(surfaces: list) -> list[Material]:
+    """Mirrors, refracting surfaces, and a diffuse one at the end."""
+    mirror, glass = material("mirror", Lobe(LobeKind.GLOSSY)), material("glass", Lobe(LobeKind.REFRACTION, ior=1.5))
+    return [*(glass if surface.index else mirror for surface in surfaces[:-1]), scenes.diffuse(0.5, 0.5, 0.5)]
+
+
 def chain_footprints(mapper, surfaces: list, meshes: list, position: tuple, target: tuple, orthographic: bool):
     """Return values of the pixels whose path follows the chain: the landing parallelogram's area by ray differentials
     and the area pi (r / s_r)^2 that the renderer's radius stands for, m^2, and each surface's segment lengths and
     cosines."""
     half = 0.3 if orthographic else 0.05
-    camera = Camera(scenes.looking(position, target), (-half, half, -half, half), SIZE, SIZE, orthographic)
-    materials = [scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))]
-    materials.append(material("glass", Lobe(LobeKind.REFRACTION, ior=1.5)))
-    kinds = [0 if surface is surfaces[-1] else 2 if surface.index else 1 for surface in surfaces]
-    settings = RenderSettings(
-        photons=64, filter_width=0.0, radius_minimum=1e-9, radius_maximum=1e9, camera_path_length=len(surfaces)
-    )
-    sun = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
-    instances = [Instance(index, np.eye(4), [kind]) for index, kind in enumerate(kinds)]
-    mapper.build(Scene(camera, meshes, instances, materials, [sun], settings=settings))
-    mapper.iterate()
-    importons = mapper.stages.importons.importons.read(IMPORTON.dtype, SIZE * SIZE)
-
-    right, up, forward = camera.matrix[:3, 0], camera.matrix[:3, 1], -camera.matrix[:3, 2]
+    camera = scenes.camera(position, target, half, SIZE, orthographic)
+    parts = zip(meshes, chain_materials(surfaces), strict=True)
+    scene = scenes.scene_of(camera, *parts, lights=[SUN], camera_path_length=len(surfaces), **UNBOUND)
+    importons = importons_of(mapper, scene)
     step = 2 * half / SIZE
     x, y = np.meshgrid(*2 * [step * (np.arange(SIZE) + 0.5) - half])
     # The pixel's center, and points a tenth of a pixel beside it.
     x = x.ravel() + step * np.array([0, 0.1, -0.1, 0, 0])[:, None]
     y = y.ravel() + step * np.array([0, 0, 0, 0.1, -0.1])[:, None]
-    aside = x[..., None] * right + y[..., None] * up
-    if orthographic:
-        origin, ray = camera.matrix[:3, 3] + aside, np.broadcast_to(forward, aside.shape)
-    else:
-        origin, ray = np.broadcast_to(camera.matrix[:3, 3], aside.shape), forward + aside
-        ray = ray / np.linalg.norm(ray, axis=-1, keepdims=True)
     with np.errstate(invalid="ignore"):  # rays beside the ball
-        landed, lengths, cosines = trace(origin, ray, surfaces)
+        landed, lengths, cosines = trace(*rays_beside(camera, x, y), surfaces)
     area = np.linalg.norm(np.cross(landed[1] - landed[2], landed[3] - landed[4]), axis=-1) / 0.2**2
     there = (importons["radius"] > 0) & (np.linalg.norm(importons["position"] - landed[0], axis=-1) < 0.01)
     assert there.sum() > 50
@@ -190,7 +182,6 @@ def test_a_glass_slab_shortens_the_path(mapper):
     )
     before, within, after = lengths
     neglected = ((before + within / 1.5 + after) / (before + within + after)) ** 2
-    print("slab: true area over that of Eq. 4", (area / estimated).min(), (area / estimated).max())
     np.testing.assert_allclose(area / estimated, neglected, rtol=5e-3)
     assert neglected.max() < 0.72  # what Eq. 4 neglects here
 
@@ -198,16 +189,13 @@ def test_a_glass_slab_shortens_the_path(mapper):
 def test_a_curved_mirror_spreads_more_than_equation_4_tells(mapper):
     """Coddington's equations: a sphere of radius R adds 2 l0 l1 / R to the spread of l0 + l1, divided by the cosine
     in the plane of incidence, times the cosine across it."""
-    ball = Ball((3, 0, 2), 0.5)
-    mesh = scenes.sphere("ball", 512, 256)
-    mesh.positions = (mesh.positions * 0.5 + np.array([3, 0, 2])).astype(np.float32)
+    ball, mesh = mirroring_ball()
     meshes = [mesh, GROUND.rectangle("ground", 9)]
     area, estimated, lengths, cosines = chain_footprints(mapper, [ball, GROUND], meshes, (0, 0, 2), (3, 0, 1.68), False)
     (l0, l1), (first, last) = lengths, cosines
     bent = 2 * l0 * l1 / 0.5
     spread = (l0 + l1 + bent / first) * (l0 + l1 + bent * first) / (l0 + l1) ** 2
     ratio = area / (estimated * first / last)
-    print("ball: true area over that of Eq. 4, cosines apart", ratio.min(), ratio.max())
     # Facets slant up to 0.4 degrees off the sphere, and Eq. 3 takes their cosine.
     np.testing.assert_allclose(ratio, spread, rtol=0.03)
     assert ratio.min() > 10
@@ -227,13 +215,13 @@ def texture(kind: str) -> tuple[Image, np.ndarray]:
 def test_image_textures_are_bilinear_and_repeat(renderer, kind):
     """As Cycles does (tests/parity/features): filtered first, decoded then."""
     image, encoded = texture(kind)
-    sheet = scenes.rectangle("sheet", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
+    sheet = scenes.square("sheet", 1.0)
     sheet.corner_uv = np.array([(-0.5, -0.25), (1.5, -0.25), (1.5, 1.75), (-0.5, 1.75)], np.float32)
-    camera = Camera(scenes.looking((0, 0, 1), (0, 0, 0)), (-1, 1, -1, 1), 40, 40, True)
+    camera = scenes.camera((0, 0, 1), (0, 0, 0), 1.0, 40, True)
     camera.matrix[:3, :3] = np.eye(3)
     glow = material("glow", Lobe(LobeKind.EMISSION, color=(1, 2, 3), color_image=0))
-    settings = RenderSettings(iterations=1, photons=64, filter_width=0.0)
-    scene = Scene(camera, [sheet], [Instance(0, np.eye(4), [0])], [glow], images=[image], settings=settings)
+    scene = scenes.scene_of(camera, (sheet, glow), iterations=1, photons=64, filter_width=0.0)
+    scene.images = [image]
     got = renderer.render(scene).frame.combined[..., :3]
     at = (np.arange(40) + 0.5) / 40 * 2
     u, v = (at - 0.5) * 7 - 0.5, (at - 0.25) * 5 - 0.5

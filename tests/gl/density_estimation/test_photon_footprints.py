@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 import scenes
-from support.lobes import Lobe, LobeKind, material
-from test_footprints import GROUND, Ball, Plane, trace
+from rendering import iterated
+from test_footprints import GROUND, Plane, chain_materials, mirroring_ball, trace
 
 from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PhotonFlag
 from rppm_addon.integrator.density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Mesh, RenderSettings, Scene
+from rppm_addon.scene import DirectLight, Light, LightKind, Mesh
 
 STRENGTH = 50.0
 BLUR_FRACTION = 0.5
@@ -21,14 +21,9 @@ ROUNDED = 2.0**-13
 def traced_photons(mapper, light: Light, surfaces: list, meshes: list[Mesh]) -> tuple[np.ndarray, np.ndarray]:
     """(segments, n) photons that came to the chain's last surface, which alone stores them, and the radii of their
     footprints there, (n,) meters."""
-    materials = [scenes.diffuse(0.5, 0.5, 0.5), material("mirror", Lobe(LobeKind.GLOSSY))]
-    materials.append(material("glass", Lobe(LobeKind.REFRACTION, ior=1.5)))
-    kinds = [0 if surface is surfaces[-1] else 2 if surface.index else 1 for surface in surfaces]
-    settings = RenderSettings(photons=8192, photon_path_length=len(surfaces), direct_light=DirectLight.PHOTONS)
-    camera = Camera(scenes.looking((0, 0, 9), (0, 0.1, 0)), (-0.5, 0.5, -0.5, 0.5), 8, 8)
-    instances = [Instance(index, np.eye(4), [kind]) for index, kind in enumerate(kinds)]
-    mapper.build(Scene(camera, meshes, instances, materials, [light], settings=settings))
-    mapper.iterate()
+    parts = zip(meshes, chain_materials(surfaces), strict=True)
+    settings = {"photons": 8192, "photon_path_length": len(surfaces), "direct_light": DirectLight.PHOTONS}
+    iterated(mapper, scenes.scene_of(scenes.camera((0, 0, 9), (0, 0.1, 0), 0.5, 8), *parts, lights=[light], **settings))
     photons = mapper.read_photons()
     there = photons[:, (photons[-1]["flags"] & PhotonFlag.STORED) != 0]
     return there, (there[-1]["flags"] & ~np.uint32((1 << PHOTON_FLAG_BITS) - 1)).view(np.float32)
@@ -48,32 +43,21 @@ def landed_area(origin: np.ndarray, rays: np.ndarray, surfaces: list, photons: n
     return np.where(np.linalg.norm(photons["position"] - landed[0], axis=-1) < 0.01, area, np.nan)
 
 
-def ball_mesh() -> Mesh:
-    mesh = scenes.sphere("ball", 512, 256)
-    mesh.positions = (mesh.positions * 0.5 + np.array([3, 0, 2])).astype(np.float32)
-    return mesh
-
-
 MIRROR = Plane((3, 0, 2), (-1, 0.4, -0.9))
 ENTRY, EXIT = Plane((0, 0, 1.5), (0, 0, 1), 1.5), Plane((0, 0, 0.5), (0, 0, 1), 1 / 1.5)
-BALL = Ball((3, 0, 2), 0.5)
+BALL, BALL_MESH = mirroring_ball()
+WIDE_GROUND = GROUND.rectangle("ground", 40)
+BY_MIRROR = [MIRROR, GROUND], [MIRROR.rectangle("mirror", 1.5), WIDE_GROUND]
+SLAB = [ENTRY.rectangle("entry", 6), EXIT.rectangle("exit", 6, flip=True), GROUND.rectangle("ground", 6)]
+CHAINS = {
+    "straight": ([GROUND], [GROUND.rectangle("ground", 9)], 2e-3),
+    "mirror": (*BY_MIRROR, 2e-3),
+    "slab": ([ENTRY, EXIT, GROUND], SLAB, 5e-3),
+    "ball": ([BALL, GROUND], [BALL_MESH, WIDE_GROUND], 0.03),  # facets slant up to 0.4 degrees off the sphere
+}
 
 
-@pytest.mark.parametrize(
-    ("surfaces", "meshes", "tolerance"),
-    [
-        ([GROUND], [GROUND.rectangle("ground", 9)], 2e-3),
-        ([MIRROR, GROUND], [MIRROR.rectangle("mirror", 1.5), GROUND.rectangle("ground", 40)], 2e-3),
-        (
-            [ENTRY, EXIT, GROUND],
-            [ENTRY.rectangle("entry", 6), EXIT.rectangle("exit", 6, flip=True), GROUND.rectangle("ground", 6)],
-            5e-3,
-        ),
-        # Facets slant up to 0.4 degrees off the sphere.
-        ([BALL, GROUND], [ball_mesh(), GROUND.rectangle("ground", 40)], 0.03),
-    ],
-    ids=["straight", "mirror", "slab", "ball"],
-)
+@pytest.mark.parametrize(("surfaces", "meshes", "tolerance"), CHAINS.values(), ids=CHAINS)
 def test_a_footprint_holds_as_many_photons_as_it_should(mapper, surfaces, meshes, tolerance):
     """By the area over which a photon's solid angle comes to be spread."""
     position = np.array([0.0, 0.0, 2.0])
@@ -92,9 +76,7 @@ def test_a_large_light_blurs_footprints(mapper):
     half = 0.5
     light = Light("light", LightKind.AREA, scenes.placed(0, 0, 2), np.full(3, STRENGTH), size=(2 * half, 2 * half))
     light.matrix[:3, :3] = np.array([[0, 0, -1], [0, 1, 0], [1, 0, 0]])  # toward the mirror
-    photons, radii = traced_photons(
-        mapper, light, [MIRROR, GROUND], [MIRROR.rectangle("mirror", 1.5), GROUND.rectangle("ground", 40)]
-    )
+    photons, radii = traced_photons(mapper, light, *BY_MIRROR)
     rays = -photons[0]["direction"].astype(float)
     solid_angles = photons[0]["flux"][:, 0].astype(float) / (STRENGTH * (2 * half) ** 2 * rays[:, 0])
     ways = [photons[0]["position"][:, 0] / rays[:, 0]]  # from the plane x = 0
@@ -111,9 +93,7 @@ def test_a_suns_photons_stay_as_far_apart_as_they_leave(mapper):
     toward = np.array([3.0, 0.0, -2.0]) / np.sqrt(13)
     light = Light("sun", LightKind.SUN, scenes.looking((0, 0, 4), tuple(toward + [0, 0, 4])), np.full(3, STRENGTH))
     light.sun_angle = angle
-    photons, radii = traced_photons(
-        mapper, light, [MIRROR, GROUND], [MIRROR.rectangle("mirror", 1.5), GROUND.rectangle("ground", 40)]
-    )
+    photons, radii = traced_photons(mapper, light, *BY_MIRROR)
     area = photons[0]["flux"][:, 0].astype(float) / STRENGTH / abs(photons[1]["direction"][:, 2])
     way = np.linalg.norm(photons[1]["position"] - photons[0]["position"].astype(float), axis=-1)
     blur = BLUR_FRACTION * np.sin(angle / 2) * way

@@ -5,8 +5,7 @@ import itertools
 
 import numpy as np
 import pytest
-import scenes
-from support.lobes import Lobe, LobeKind, material
+from busy_scenes import busy_room
 from test_convergence import blurred, floor_radiance, lit_floor, pixel_points
 
 from rppm_addon.integrator.camera_paths.gbuffer import filter_offsets
@@ -16,15 +15,10 @@ from rppm_addon.scene import DirectLight, Scene
 from rppm_addon.session.render.renderer import Renderer
 
 
-def busy_room(direct_light: DirectLight, seed: int = 3) -> Scene:
-    """Splats onto the camera's view and in a mirror and through glass, of direct, caustic and scattered light, and a
-    glossy wall that stores photons; a few iterations more than those that learn."""
-    scene = scenes.room(
-        32, direct_light=direct_light, seed=seed, iterations=LEARNING_ITERATIONS + 4, photons=2048,
-        camera_path_length=4, photon_path_length=4, radius_scale=100.0,
-    )  # fmt: skip
-    rough = Lobe(LobeKind.GLOSSY, weight=0.5, color=(0.8, 0.5, 0.3), roughness=0.6)
-    scene.materials[1] = material("rough", rough, Lobe(LobeKind.DIFFUSE, weight=0.5, color=(0.7, 0.1, 0.1)))
+def several_iterations(direct_light: DirectLight, seed: int = 3) -> Scene:
+    """A few iterations more than those that learn."""
+    scene = busy_room(direct_light)
+    scene.settings = scene.settings.with_values(seed=seed, iterations=LEARNING_ITERATIONS + 4)
     return scene
 
 
@@ -35,14 +29,13 @@ def arrays(renderer: Renderer, scene: Scene) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("direct_light", [DirectLight.RAYS, pytest.param(DirectLight.PHOTONS, marks=pytest.mark.long)])
 def test_a_seed_gives_the_same_picture(renderer, monkeypatch, direct_light):
-    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", 32 * 12)  # three bands
-    first = arrays(renderer, busy_room(direct_light))
-    other = arrays(renderer, busy_room(direct_light, seed=4))
-    again = arrays(renderer, busy_room(direct_light))
+    monkeypatch.setattr(band, "MAXIMUM_BAND_PIXELS", 16 * 6)  # three bands
+    first = arrays(renderer, several_iterations(direct_light))
+    other = arrays(renderer, several_iterations(direct_light, seed=4))
+    again = arrays(renderer, several_iterations(direct_light))
     with Renderer() as second:
-        elsewhere = arrays(second, busy_room(direct_light))
+        elsewhere = arrays(second, several_iterations(direct_light))
     for mine, same, fresh in zip(first, again, elsewhere, strict=True):
-        print("floats that differ:", (mine != same).sum(), (mine != fresh).sum(), "of", mine.size)
         np.testing.assert_array_equal(mine.view(np.uint32), same.view(np.uint32))
         np.testing.assert_array_equal(mine.view(np.uint32), fresh.view(np.uint32))
     assert (first[0] != other[0]).mean() > 0.5
@@ -54,9 +47,7 @@ def test_errors_of_seeds_are_independent(renderer, direct_light):
     b with seed b's iteration a. Kernels smaller than pixels keep the errors of a picture's pixels apart."""
     seeds, iterations = 12, 4
     scene = lit_floor(0.5, 32768, 0.04, size=32)
-    scene.settings.direct_light = direct_light
-    scene.settings.alpha = 0.999999
-    scene.settings.iterations = iterations
+    scene.settings = scene.settings.with_values(direct_light=direct_light, alpha=0.999999, iterations=iterations)
     points = pixel_points(scene)
     exact = floor_radiance(np.linalg.norm(points, axis=-1))
     if direct_light is DirectLight.PHOTONS:
@@ -74,13 +65,8 @@ def test_errors_of_seeds_are_independent(renderer, direct_light):
         error = np.diff(sums, axis=0) - exact
         errors[seed] = (error / np.sqrt((error**2).mean((1, 2), keepdims=True))).reshape(iterations, -1)
     limit = 1 / np.sqrt(exact.size)
-    found = []
-    for a, b in itertools.combinations(range(seeds), 2):
-        found.append(errors[a] @ errors[b].T / exact.size)
-    found = np.array(found)
-    print(
-        "correlation", found.mean(), "deviation", found.std(), "of independent pixels", limit, "most", abs(found).max()
-    )
+    pairs = itertools.combinations(errors, 2)
+    found = np.array([first @ second.T / exact.size for first, second in pairs])
     assert abs(found.mean()) < 4 * limit / np.sqrt(found.size)
     assert abs(found.std() / limit - 1) < 4 / np.sqrt(2 * found.size)
     assert abs(found).max() < 5 * limit

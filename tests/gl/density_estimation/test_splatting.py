@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scenes
 from packed_normals import unpack
+from rendering import iterated, radiance_of
 
 from rppm_addon.integrator.common.records.importons import IMPORTON, PHOTON_FACTOR_SHIFT, GatherFlag
 from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PhotonFlag
@@ -89,8 +90,7 @@ def importons_of_segments(mapper, monkeypatch, count: int) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("route", ROUTES)
 def test_direct_splats_are_all_pairs(mapper, route):
-    mapper.build(diffuse_room(camera_path_length=1, density_estimation=route))
-    mapper.iterate()
+    iterated(mapper, diffuse_room(camera_path_length=1, density_estimation=route))
     count = 24 * 24
     importons = mapper.stages.importons.importons.read(IMPORTON.dtype, count)
     expected = brute_force(importons, mapper.read_photons().ravel(), mapper.splat_radii[1])
@@ -143,10 +143,7 @@ def test_gathering_splats_are_all_pairs(mapper, monkeypatch, route):
 
 
 def gathered_picture(mapper, **settings) -> np.ndarray:
-    mapper.build(diffuse_room(camera_path_length=2, **settings))
-    for _ in range(2):
-        mapper.iterate()
-    return mapper.film.read_radiance()[..., :3].astype(np.float64)
+    return radiance_of(mapper, diffuse_room(camera_path_length=2, **settings), 2)[..., :3].astype(np.float64)
 
 
 @pytest.mark.parametrize("route", ROUTES)

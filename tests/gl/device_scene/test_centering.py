@@ -7,23 +7,13 @@ import numpy as np
 import pytest
 import scenes
 from moving_scenes import everything_moves
+from rendering import radiance_of
 
 from rppm_addon.integrator.device_scene.centering import CELL, Centering
 from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.integrator.viewport.reprojection import Reprojection
-from rppm_addon.scene import (
-    AovOutput,
-    Camera,
-    Instance,
-    Light,
-    LightKind,
-    Movement,
-    NodeGraph,
-    RenderSettings,
-    Scene,
-    Texels,
-    World,
-)
+from rppm_addon.scene import AovOutput, Light, LightKind, NodeGraph, Scene, World
+from rppm_addon.scene.camera import Camera, Texels
 
 FAR = {"20 km": (78 * CELL, -80 * CELL, CELL), "1,000 km": (3906 * CELL, 3907 * CELL, -2 * CELL)}
 """Meters; whole cells, so that what is left after centering is the scene at the origin, bit for bit."""
@@ -40,29 +30,19 @@ def on_grid(matrices: np.ndarray) -> np.ndarray:
 def moved(scene: Scene, way: tuple[float, ...]) -> Scene:
     """The scene as a whole in another place, its places on a grid."""
 
-    def placed(member):
-        matrix = on_grid(member.matrix)
-        matrix[:3, 3] += way
-        return dataclasses.replace(member, matrix=matrix)
-
-    def along(movement: Movement):
-        matrices = on_grid(movement.matrices)
+    def along(member, name="matrix"):
+        matrices = on_grid(getattr(member, name))
         matrices[..., :3, 3] += way
-        return dataclasses.replace(movement, matrices=matrices)
+        return dataclasses.replace(member, **{name: matrices})
 
-    shutter = scene.shutter and dataclasses.replace(
-        scene.shutter,
-        instances=[along(movement) for movement in scene.shutter.instances],
-        lights=[along(movement) for movement in scene.shutter.lights],
-        camera=along(scene.shutter.camera),
-    )
+    shutter = scene.shutter
+    if shutter:
+        instances, lights = ([along(each, "matrices") for each in part] for part in (shutter.instances, shutter.lights))
+        camera = along(shutter.camera, "matrices")
+        shutter = dataclasses.replace(shutter, instances=instances, lights=lights, camera=camera)
+    instances, lights = ([along(each) for each in part] for part in (scene.instances, scene.lights))
     return dataclasses.replace(
-        scene,
-        camera=placed(scene.camera),
-        instances=[placed(instance) for instance in scene.instances],
-        lights=[placed(light) for light in scene.lights],
-        shutter=shutter,
-        warnings=[],
+        scene, camera=along(scene.camera), instances=instances, lights=lights, shutter=shutter, warnings=[]
     )
 
 
@@ -86,26 +66,16 @@ def telling_floor() -> Scene:
         "Raycast": add("raycast", "hit_position", direction=(0.0, 0.0, 1.0), length=9.0),
     }
     floor.graph.aovs = [AovOutput(name, value) for name, value in told.items()]
-    camera = Camera(scenes.looking((0.5, 0, 3), (0.5, 0, 0)), (-0.5, 0.5, -0.5, 0.5), 8, 8)
-    meshes = [
-        scenes.rectangle("floor", (-4, -4, 0), (4, -4, 0), (4, 4, 0), (-4, 4, 0)),
-        scenes.rectangle("roof", (-4, -4, 4), (4, -4, 4), (4, 4, 4), (-4, 4, 4)),
-    ]
-    instances = [Instance(0, scenes.placed(0.5, 0.25, 0.0), [0]), Instance(1, np.eye(4), [])]
     aovs = tuple(f"{name}.RGBA" for name in told)
-    settings = RenderSettings(passes=("Position",), aovs=aovs, photons=64, filter_width=0.0, iterations=1)
-    return Scene(camera, meshes, instances, [floor], settings=settings)
+    settings = {"passes": ("Position",), "aovs": aovs, "photons": 64, "filter_width": 0.0, "iterations": 1}
+    parts = (scenes.square("floor", 4.0), floor), (scenes.square("roof", 4.0, 4.0), scenes.diffuse(1, 1, 1))
+    scene = scenes.scene_of(scenes.camera((0.5, 0, 3), (0.5, 0, 0), 0.5, 8), *parts, **settings)
+    scene.instances[0].matrix = scenes.placed(0.5, 0.25, 0.0)
+    return scene
 
 
 def room(**settings: object) -> Scene:
     return scenes.room(24, photons=2048, camera_path_length=3, photon_path_length=4, **settings)
-
-
-def radiance(mapper, scene: Scene, iterations: int = 3) -> np.ndarray:
-    mapper.build(scene)
-    for _ in range(iterations):
-        mapper.iterate()
-    return mapper.film.read_radiance()
 
 
 def with_nodes(scene: Scene) -> Scene:
@@ -128,15 +98,15 @@ CHANGES = {"still": lambda scene: scene, "moving": lambda scene: everything_move
 @pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
 def test_a_scene_gives_the_same_picture_anywhere(mapper, way, change):
     scene = change(room())
-    near = radiance(mapper, moved(scene, (0, 0, 0)))
+    near = radiance_of(mapper, moved(scene, (0, 0, 0)), 3)
     assert near[..., :3].mean() > 0.1
-    np.testing.assert_array_equal(radiance(mapper, moved(scene, way)), near)
+    np.testing.assert_array_equal(radiance_of(mapper, moved(scene, way), 3), near)
 
 
 def test_a_scene_gives_the_same_light_between_the_cells(mapper):
     """150 m off, where other places round otherwise: paths differ, so means do by noise."""
     scene = room()
-    near, far = (radiance(mapper, moved(scene, way), 24)[..., :3] for way in ((0, 0, 0), (150.0, 150.0, 0)))
+    near, far = (radiance_of(mapper, moved(scene, way), 24)[..., :3] for way in ((0, 0, 0), (150.0, 150.0, 0)))
     # Means of 24 iterations; halves of the same render differ by less than 2 %.
     assert far.mean() == pytest.approx(near.mean(), rel=0.02)
 

@@ -7,15 +7,14 @@ import numpy as np
 import pytest
 import scenes
 from busy_scenes import busy_room
+from rendering import iterated
 
 from rppm_addon.scene.settings import AccelerationStructure, DensityEstimation
 
 
 def picture_of(mapper, scene, iterations=2):
     """The film, and the buffers that are larger than a storage block."""
-    mapper.build(scene)
-    for _ in range(iterations):
-        mapper.iterate()
+    iterated(mapper, scene, iterations)
     limit = mapper.context.storage_block_limit
     return mapper.film.read_radiance(), {name for name, size in mapper.memory_bytes.items() if size > limit}
 
@@ -24,13 +23,9 @@ def with_blocks_of(context, monkeypatch, limit):
     monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", limit)
 
 
-@pytest.mark.parametrize(
-    ("structure", "longest"),
-    [
-        (AccelerationStructure.DEEP_CUBEMAP, "deep cubemap fragments"),
-        (AccelerationStructure.BVH, "BVH nodes"),
-    ],
-)
+@pytest.mark.parametrize(("structure", "longest"), [
+    (AccelerationStructure.DEEP_CUBEMAP, "deep cubemap fragments"), (AccelerationStructure.BVH, "BVH nodes"),
+])  # fmt: skip
 def test_many_triangles(mapper, other_mapper, context, monkeypatch, structure, longest):
     scene = scenes.room(16, photons=128, camera_path_length=3, photon_path_length=3, acceleration_structure=structure)
     scene.meshes.append(scenes.sphere("ball", 64, 40))

@@ -8,19 +8,11 @@ import pytest
 import scenes
 from moving_scenes import BALL, everything_moves, open_for, way
 from support.lobes import Lobe, LobeKind, material
+from support.render_states import assert_goes_on
 
 from rppm_addon.integrator.device_scene.shutter import moment
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import (
-    Aperture,
-    Camera,
-    Instance,
-    Light,
-    LightKind,
-    MovingScene,
-    RenderSettings,
-    Scene,
-)
+from rppm_addon.scene import Aperture, Camera, Instance, Light, LightKind, MovingScene, RenderSettings, Scene
 from rppm_addon.session.render.renderer import Renderer
 
 
@@ -61,47 +53,26 @@ def test_a_state_goes_on_in_the_middle(mapper, other_mapper):
     light = scene.lights[0]
     scene.lights = [light, dataclasses.replace(light, name="other", matrix=scenes.placed(0.5, 0.5, 0.9))]
     scene.shutter.lights[0].matrices[1] @= np.diag([3.0, 3.0, 1.0, 1.0])
-    mapper.update(scene)
-    states = []
-    for _ in range(7):
-        mapper.iterate()
-        states.append(mapper.state())
-    for stop in (2, 5):
-        other_mapper.build(scene)
-        other_mapper.resume(states[stop - 1])
-        for _ in range(stop, 7):
-            other_mapper.iterate()
-        np.testing.assert_array_equal(other_mapper.state().radiance, states[-1].radiance)
-        np.testing.assert_array_equal(other_mapper.state().tallies, states[-1].tallies)
+    assert_goes_on(mapper, scene, "radiance", "tallies", iterations=7, stops=(2, 5), other=other_mapper)
 
 
 def test_radii_are_those_of_the_whole_time(mapper):
     scene = open_for(room(), instances=[way(BALL, room().instances[BALL].matrix, 4.0, 0.0, 3.0)])
     mapper.update(scene)
-    limits, bounds = (
-        mapper.learning.radius_schedule.limits,
-        (mapper.device_scene.geometry.bounds_low, mapper.device_scene.geometry.bounds_high),
-    )
+    schedule, geometry = mapper.learning.radius_schedule, mapper.device_scene.geometry
+    limits, bounds = schedule.limits, (geometry.bounds_low, geometry.bounds_high)
     for _ in range(3):
         mapper.iterate()
-        assert mapper.learning.radius_schedule.limits == limits
-        np.testing.assert_allclose(
-            (mapper.device_scene.geometry.bounds_low, mapper.device_scene.geometry.bounds_high), bounds, rtol=1e-6
-        )
+        assert schedule.limits == limits
+        np.testing.assert_allclose((geometry.bounds_low, geometry.bounds_high), bounds, rtol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("members", "parts"),
-    [
-        ({}, []),
-        ({"camera": True}, []),
-        ({"lights": True}, ["lights"]),
-        ({"instances": True}, ["geometry", "lights", "acceleration"]),
-    ],
-)
-def test_only_what_moves_is_built(mapper, monkeypatch, members, parts):
+@pytest.mark.parametrize(("member", "parts"), [
+    (None, []), ("camera", []), ("lights", ["lights"]), ("instances", ["geometry", "lights", "acceleration"]),
+])  # fmt: skip
+def test_only_what_moves_is_built(mapper, monkeypatch, member, parts):
     moving = everything_moves(room(), 1.0)
-    kept = {name: getattr(moving.shutter, name) for name in members}
+    kept = {member: getattr(moving.shutter, member)} if member else {}
     mapper.update(open_for(moving, **kept))
     done: list[str] = []
     for part in ("geometry", "materials", "lights", "acceleration"):
@@ -144,15 +115,13 @@ def test_a_caustic_is_the_mean_of_those_at_moments(renderer):
     moving, parts = MovingScene(scene), 16
     caustic = (slice(12, 20), slice(8, 20))
     blurred = np.array([seeded(renderer, scene, seed, iterations=48)[caustic] for seed in range(3)])
-    at_moments = np.array(
+    at_moments = np.mean(
         [
-            [
-                seeded(renderer, moving.at((k + 0.5) / parts), 9 + parts * j + k, iterations=6)[caustic]
-                for k in range(parts)
-            ]
-            for j in range(2)
-        ]
-    ).mean(axis=1)
+            [seeded(renderer, moving.at((k + 0.5) / parts), 9 + k + j, iterations=6)[caustic] for k in range(parts)]
+            for j in (0, parts)
+        ],
+        axis=1,
+    )
     unmoved = seeded(renderer, still, 0, iterations=48)[caustic]
     error = np.hypot(*(np.std(p.mean(axis=(1, 2, 3)), ddof=1) / len(p) ** 0.5 for p in (blurred, at_moments)))
     energy, expected = blurred.mean(), at_moments.mean()

@@ -6,7 +6,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 from support.render_states import assert_goes_on
 
-from rppm_addon.scene import AovOutput, Camera, Instance, Light, LightKind, Link, RenderSettings, Scene
+from rppm_addon.scene import AovOutput, Light, LightKind, Link, Scene
 
 AOVS = ("Place.RGBA", "Height.X", "Unused.X")
 
@@ -14,31 +14,16 @@ AOVS = ("Place.RGBA", "Height.X", "Unused.X")
 def pane_over_floor(pane: Lobe, aovs: tuple[str, ...] = AOVS, **settings) -> Scene:
     """A camera 3 m above a floor whose right half is missing, with a pane 1 m above it. The floor writes where it is,
     and 7, the pane a color and 0.5."""
-    camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-0.5, 0.5, -0.5, 0.5), 8, 8)
-    meshes = [
-        scenes.rectangle("pane", (-2, -2, 1), (2, -2, 1), (2, 2, 1), (-2, 2, 1)),
-        scenes.rectangle("floor", (-4, -4, 0), (0, -4, 0), (0, 4, 0), (-4, 4, 0)),
-    ]
     upper, lower = material("pane", pane), scenes.diffuse(1, 1, 1)
     upper.graph.aovs = [AovOutput("Place", (0.25, 0.5, 1.0), 9.0), AovOutput("Height", 9.0, 0.5)]
     position = lower.graph.add("new_geometry", "position")
     lower.graph.aovs = [AovOutput("Place", position), AovOutput("Height", value=Link(position.node, "position"))]
     lower.graph.aovs.append(AovOutput("Height", value=7.0))
-    return Scene(
-        camera, meshes, [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])], [upper, lower],
-        [Light("sun", LightKind.SUN, np.eye(4), np.ones(3))],
-        settings=RenderSettings(passes=(), aovs=aovs, photons=64, **{"iterations": 8, "filter_width": 0.0} | settings),
-    )  # fmt: skip
-
-
-def floor_places() -> np.ndarray:
-    """(8, 8, 3) of what the pixels see of the floor's plane."""
-    at = 3.0 * ((np.arange(8) + 0.5) / 8 - 0.5)
-    return np.stack([*np.meshgrid(at, at), np.zeros((8, 8))], axis=-1)
-
-
-def is_left(places: np.ndarray) -> np.ndarray:
-    return places[..., 0] < 0.0
+    left = scenes.rectangle("floor", (-4, -4, 0), (0, -4, 0), (0, 4, 0), (-4, 4, 0))
+    camera, sun = scenes.camera((0, 0, 3), (0, 0, 0), 0.5, 8), Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
+    fixed = {"passes": (), "aovs": aovs, "photons": 64, "iterations": 8, "filter_width": 0.0}
+    parts = (scenes.square("pane", 2.0, 1.0), upper), (left, lower)
+    return scenes.scene_of(camera, *parts, lights=[sun], **fixed | settings)
 
 
 def test_values_of_the_first_surface(renderer):
@@ -53,8 +38,8 @@ def test_values_of_the_first_surface(renderer):
 def test_what_is_seen_through_adds_its_own(renderer):
     """As in Cycles: all surfaces up to the first that hides more than half, none by its share."""
     passes = renderer.render(pane_over_floor(Lobe(LobeKind.TRANSPARENT))).frame.passes
-    places = floor_places()
-    left = is_left(places)
+    places = scenes.floor_places(scenes.camera((0, 0, 3), (0, 0, 0), 0.5, 8))
+    left = places[..., 0] < 0.0
     color = np.where(left[..., None], places, 0.0) + (0.25, 0.5, 1.0)
     np.testing.assert_allclose(passes["Place"][..., :3], color, atol=1e-4)
     np.testing.assert_allclose(passes["Place"][..., 3], 1.0 + left, rtol=1e-6)

@@ -6,7 +6,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 from support.render_states import assert_goes_on
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, RenderSettings, Scene
+from rppm_addon.scene import Camera, Light, LightKind, Scene
 from rppm_addon.scene.cryptomatte import identifiers_of
 
 PASSES = tuple(f"Crypto{layer}{part:02d}" for layer in ("Object", "Material", "Asset") for part in range(2))
@@ -16,20 +16,16 @@ def stripes(objects: int = 3, alpha: float = 0.25, **settings) -> Scene:
     """A camera 4 m above a floor of so many strips, below a pane: the floor covers two and a half of the four pixels of
     the only row, which the filter does not look beyond."""
     camera = Camera(scenes.looking((0, 0, 4), (0, 0, 0)), (-0.5, 0.5, -0.125, 0.125), 4, 1)
-    edges = np.linspace(-3.5, 0.5, objects + 1)
-    meshes = [
-        scenes.rectangle(f"strip {number}", (a, -2, 0), (b, -2, 0), (b, 2, 0), (a, 2, 0))
-        for number, (a, b) in enumerate(zip(edges, edges[1:]))
-    ]
-    meshes.append(scenes.rectangle("pane", (-2, -2, 1), (2, -2, 1), (2, 2, 1), (-2, 2, 1)))
-    materials = [scenes.diffuse(1, 1, 1), material("Pane", Lobe(LobeKind.PRINCIPLED, alpha=alpha))]
-    instances = [Instance(index, np.eye(4), [0], f"Strip {index}") for index in range(objects)]
-    instances.append(Instance(objects, np.eye(4), [1], "Pane"))
-    return Scene(
-        camera, meshes, instances, materials, [Light("sun", LightKind.SUN, np.eye(4), np.ones(3))],
-        settings=RenderSettings(iterations=32, photons=64, filter_width=0.5, passes=PASSES).with_values(**settings),
-        asset_names={f"Strip {index}": "Floor" for index in range(objects)},
-    )  # fmt: skip
+    edges, white = np.linspace(-3.5, 0.5, objects + 1), scenes.diffuse(1, 1, 1)
+    strips = [scenes.rectangle("strip", (a, -2, 0), (b, -2, 0), (b, 2, 0), (a, 2, 0)) for a, b in zip(edges, edges[1:])]
+    pane = scenes.square("pane", 2.0, 1.0), material("Pane", Lobe(LobeKind.PRINCIPLED, alpha=alpha))
+    parts, sun = [*((strip, white) for strip in strips), pane], Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
+    fixed = {"iterations": 32, "photons": 64, "filter_width": 0.5, "passes": PASSES}
+    scene = scenes.scene_of(camera, *parts, lights=[sun], **fixed | settings)
+    for index, instance in enumerate(scene.instances):
+        instance.object_name = f"Strip {index}" if index < objects else "Pane"
+    scene.asset_names = {f"Strip {index}": "Floor" for index in range(objects)}
+    return scene
 
 
 def shares(frame, layer: str, names: list[str]) -> np.ndarray:
@@ -52,7 +48,7 @@ def test_what_is_behind_counts_by_what_is_let_through(renderer):
     assert 0.25 < objects[2, 2] < 0.5 and objects[1, 0] > 0.0  # the floor ends in the middle of this pixel
     floor_and_pane = [objects[:3].sum(0), objects[3]]
     np.testing.assert_allclose(shares(frame, "CryptoAsset", ["Floor", "Pane"]), floor_and_pane, atol=1e-6)
-    names = [material.name for material in scene.materials]
+    names = [scene.materials[0].name, scene.materials[-1].name]
     np.testing.assert_allclose(shares(frame, "CryptoMaterial", names), floor_and_pane, atol=1e-6)
 
 

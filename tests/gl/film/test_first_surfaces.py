@@ -4,22 +4,21 @@
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
+from rppm_addon.scene import Light, LightKind, Material, Scene
 from rppm_addon.session.render.frame_reading import read_combined
 from rppm_addon.session.viewport.presenter import film_picture
 
 
 def behind_a_pane(material: Material, floor: bool = True) -> Scene:
     """A camera 3 m above a floor, with a pane of a material 1 m above it."""
-    camera = Camera(scenes.looking((0, 0, 3), (0, 0, 0)), (-0.2, 0.2, -0.2, 0.2), 16, 16)
-    pane = scenes.rectangle("pane", (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1))
     ground = scenes.polygons("floor", np.array([(-2, -2, -1), (2, -2, 1), (2, 2, 1), (-2, 2, -1)]), [(0, 1, 2, 3)])
-    instances = [Instance(0, np.eye(4), [0])] + ([Instance(1, np.eye(4), [1])] if floor else [])
-    sun = Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
-    settings = RenderSettings(iterations=64, photons=256, filter_width=0.0, film_transparent=not floor)
-    return Scene(camera, [pane, ground], instances, [material, scenes.diffuse(1, 1, 1)], [sun], settings=settings)
+    parts = [(scenes.square("pane", 1.0, 1.0), material), *[(ground, scenes.diffuse(1, 1, 1))] * floor]
+    camera, sun = scenes.camera((0, 0, 3), (0, 0, 0), 0.2, 16), Light("sun", LightKind.SUN, np.eye(4), np.ones(3))
+    settings = {"iterations": 64, "photons": 256, "filter_width": 0.0, "film_transparent": not floor}
+    return scenes.scene_of(camera, *parts, lights=[sun], **settings)
 
 
 def see_through(share: float) -> Material:
@@ -51,16 +50,13 @@ def test_glass_hides_the_background(renderer):
 def test_a_viewport_shows_the_pass_of_its_settings(mapper):
     scene = behind_a_pane(see_through(0.0))
     scene.exposure, scene.settings.passes = 3.0, ("Depth",)
-    mapper.build(scene)
-    mapper.iterate()
+    iterated(mapper, scene)
     picture = film_picture(mapper.film, scene)
     np.testing.assert_allclose(picture[..., :3], 2.0, rtol=1e-4)  # as gray, and not exposed
     assert (picture[..., 3] == 1.0).all()
     scene.settings.passes = ("Normal",)
-    mapper.build(scene)
-    mapper.iterate()
+    iterated(mapper, scene)
     np.testing.assert_allclose(film_picture(mapper.film, scene)[8, 8], (0, 0, 1, 1), atol=1e-3)
     scene.settings.passes = ()
-    mapper.build(scene)
-    mapper.iterate()
+    iterated(mapper, scene)
     np.testing.assert_array_equal(film_picture(mapper.film, scene), read_combined(mapper.film, 3.0))

@@ -4,14 +4,16 @@
 import numpy as np
 import pytest
 import scenes
-from support.render_states import assert_same_state
+from support.render_states import assert_goes_on
 
+from rppm_addon.gl.buffer_sets import sum_by_name
 from rppm_addon.integrator.common import band
 from rppm_addon.scene import Scene, World
 from rppm_addon.scene.settings import DensityEstimation, DirectLight
 
 GROUPS = ("lamps", "shining", "world")
 ROUNDING = {"rtol": 2e-6, "atol": 2e-6}
+RASTERIZED = {"use_final_gather": False, "density_estimation": DensityEstimation.RASTERIZED}
 BY_PHOTONS = {"direct_light": DirectLight.PHOTONS, "use_final_gather": False}
 
 
@@ -37,13 +39,7 @@ def light_of(frame, group: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "settings",
-    [
-        {},
-        {"use_final_gather": False, "density_estimation": DensityEstimation.RASTERIZED},
-        {**BY_PHOTONS, "use_splat_roulette": True},
-    ],
-    ids=["gathered", "rasterized", "photons"],
+    "settings", [{}, RASTERIZED, {**BY_PHOTONS, "use_splat_roulette": True}], ids=["gathered", "rasterized", "photons"]
 )
 def test_each_light_has_its_own_pass(renderer, settings):
     frame = renderer.render(colored(**settings)).frame
@@ -86,33 +82,19 @@ def test_passes_are_exposed(renderer):
 
 
 def test_a_render_goes_on_bit_for_bit(mapper):
-    mapper.build(colored(size=8, photons=256))
-    states = []
-    for _ in range(3):
-        mapper.iterate()
-        states.append(mapper.state())
-    mapper.resume(states[0])
-    for _ in range(2):
-        mapper.iterate()
-    assert_same_state(mapper.state(), states[2], "passes", "pass_counts", "radiance")
-    assert states[2].passes["Combined_shining"].any()
+    scene = colored(size=8, photons=256)
+    state = assert_goes_on(mapper, scene, "passes", "pass_counts", "radiance", iterations=3, stops=(1,))
+    assert state.passes["Combined_shining"].any()
 
 
 def test_groups_that_are_off_take_no_memory(renderer):
     scene = scenes.room(16, photons=256)
-    without = renderer.memory(scene).working
+    without = sum_by_name(renderer.memory(scene).working.values())
     scene.settings = scene.settings.with_values(light_groups=("key", "rim"))
-    working = renderer.memory(scene).working
-    more = {
-        name: size - without[group].get(name, 0)
-        for group, sizes in working.items()
-        for name, size in sizes.items()
-        if size != without[group].get(name, 0)
-    }
-    pixels = 16 * 16
-    assert more.pop("split of direct light") == 32 * pixels
-    assert more.pop("table of light groups") == 64
-    assert more == {
+    working, pixels = sum_by_name(renderer.memory(scene).working.values()), 16 * 16
+    assert {name: size for name, size in working.items() if size != without.get(name, 0)} == {
+        "split of direct light": 32 * pixels,
+        "table of light groups": 64,
         "gathered radiance of light groups": 2 * 48 * pixels,
         "light groups of photons": 4 * 256,
         "light of groups": 2 * 24 * pixels,

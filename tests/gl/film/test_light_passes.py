@@ -8,12 +8,13 @@ from path_glass import panes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common import band
-from rppm_addon.scene import Instance, Light, LightKind, Material, NodeGraph
+from rppm_addon.scene import Light, LightKind, Material, Mesh, NodeGraph
 from rppm_addon.scene.passes import SCATTERED_LIGHT
 from rppm_addon.scene.settings import DensityEstimation, DirectLight
 
 KINDS = ("Diffuse", "Glossy", "Transmission")
 LIGHT = (*(entry.name for entry in SCATTERED_LIGHT), "Emission", "Environment", "Caustics")
+RASTERIZED = {"use_final_gather": False, "density_estimation": DensityEstimation.RASTERIZED}
 BY_PHOTONS = {"direct_light": DirectLight.PHOTONS, "use_final_gather": False}
 ROUNDING = {"rtol": 2e-6, "atol": 2e-6}
 """Tolerances for sums of some thousand floats that take turns in being large."""
@@ -30,13 +31,7 @@ def recombined(passes: dict[str, np.ndarray]) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "settings",
-    [
-        {},
-        {"use_final_gather": False, "density_estimation": DensityEstimation.RASTERIZED},
-        {**BY_PHOTONS, "use_splat_roulette": True},
-    ],
-    ids=["gathered", "rasterized", "photons"],
+    "settings", [{}, RASTERIZED, {**BY_PHOTONS, "use_splat_roulette": True}], ids=["gathered", "rasterized", "photons"]
 )
 def test_passes_add_up_to_combined(renderer, settings):
     scene = everything(**settings)
@@ -89,43 +84,35 @@ def test_what_is_handed_out_is_exposed_and_without_color(renderer):
     assert np.ptp(green) < 1e-4 * green.max()
 
 
-def below_glass(**settings: object):
+def below_glass(*others: tuple[Mesh, Lobe], **settings: object):
     """A floor below a slab, lit by a light above it, and seen from below it."""
-    scene = scenes.room(16, iterations=4, photons=16384, passes=LIGHT, **settings)
-    parts = [(scenes.rectangle("floor", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)), Lobe(LobeKind.DIFFUSE))]
-    parts += panes(slab=True)
-    scene.meshes = [mesh for mesh, _ in parts]
-    scene.materials = [material(mesh.name, lobe) for mesh, lobe in parts]
-    scene.instances = [Instance(number, np.eye(4), [number]) for number in range(len(parts))]
-    scene.lights = [Light("light", LightKind.POINT, scenes.placed(0, 0, 1.4), np.full(3, 5.0))]
-    scene.camera.matrix = scenes.looking((0, -0.5, 0.5), (0, 0, 0))
-    return scene
-
-
-def fibers(kind: str, **options: str) -> Material:
-    graph = NodeGraph()
-    graph.surface = graph.add(kind, "bsdf", options=options, color=(0.8, 0.5, 0.2))
-    return Material(kind, graph)
+    parts = [(scenes.square("floor", 1.0), Lobe(LobeKind.DIFFUSE)), *panes(slab=True), *others]
+    return scenes.scene_of(
+        scenes.camera((0, -0.5, 0.5), (0, 0, 0), 0.4, 16), *((mesh, material(mesh.name, lobe)) for mesh, lobe in parts),
+        lights=[Light("light", LightKind.POINT, scenes.placed(0, 0, 1.4), np.full(3, 5.0))],
+        iterations=4, photons=16384, passes=LIGHT, **settings,
+    )  # fmt: skip
 
 
 @pytest.mark.long
-def test_light_of_fibers_is_glossy_but_for_the_transmission_of_the_hair_bsdf(renderer):
+@pytest.mark.parametrize(
+    ("kind", "node", "options"),
+    [
+        ("Transmission", "bsdf_hair", {"component": "Transmission"}),
+        ("Glossy", "bsdf_hair_principled", {"model": "CHIANG", "parametrization": "COLOR"}),
+    ],
+)
+def test_light_of_fibers_is_glossy_but_for_the_transmission_of_the_hair_bsdf(renderer, kind, node, options):
     """As Cycles has it, from wherever light comes: here from behind."""
-    scene = scenes.room(12, iterations=4, photons=64, passes=(*LIGHT, *(f"{kind} Color" for kind in KINDS)))
-    scene.meshes = [scenes.rectangle("sheet", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))]
-    scene.instances = [Instance(0, np.eye(4), [0])]
-    scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0.5, 0.5, -2), (0, 0, 0)), np.full(3, 3.0))]
-    scene.camera.matrix = scenes.looking((0, 0, 2), (0, 0.001, 0))
-    materials = {
-        "Transmission": fibers("bsdf_hair", component="Transmission"),
-        "Glossy": fibers("bsdf_hair_principled", model="CHIANG", parametrization="COLOR"),
-    }
-    for kind, hairy in materials.items():
-        scene.materials = [hairy]
-        frame = renderer.render(scene).frame
-        assert frame.passes[f"{kind} Direct"].mean() > 0.01
-        np.testing.assert_allclose(recombined(frame.passes), frame.combined[..., :3], **ROUNDING)
-        assert not any(frame.passes[f"{other} Direct"].any() for other in KINDS if other != kind)
+    graph = NodeGraph()
+    graph.surface = graph.add(node, "bsdf", options=options, color=(0.8, 0.5, 0.2))
+    sun = Light("sun", LightKind.SUN, scenes.looking((0.5, 0.5, -2), (0, 0, 0)), np.full(3, 3.0))
+    camera, passes = scenes.camera((0, 0, 2), (0, 0.001, 0), 0.4, 12), (*LIGHT, *(f"{kind} Color" for kind in KINDS))
+    sheet = scenes.square("sheet", 1.0), Material(node, graph)
+    frame = renderer.render(scenes.scene_of(camera, sheet, lights=[sun], iterations=4, photons=64, passes=passes)).frame
+    assert frame.passes[f"{kind} Direct"].mean() > 0.01
+    np.testing.assert_allclose(recombined(frame.passes), frame.combined[..., :3], **ROUNDING)
+    assert not any(frame.passes[f"{other} Direct"].any() for other in KINDS if other != kind)
 
 
 @pytest.mark.parametrize("gathers", [True, False])
@@ -146,12 +133,7 @@ def test_light_of_diffuse_surfaces_is_no_caustic(renderer):
 
 def test_what_a_mirror_shows_is_indirect_but_for_lights(renderer):
     """And a caustic that is seen in it still is one."""
-    scene = below_glass()
-    scene.meshes.append(
-        scenes.rectangle("mirror", (-0.2, -0.2, 0.35), (0.2, -0.2, 0.35), (0.2, 0.2, 0.35), (-0.2, 0.2, 0.35))
-    )
-    scene.materials.append(material("mirror", Lobe(LobeKind.GLOSSY)))
-    scene.instances.append(Instance(3, np.eye(4), [3]))
+    scene = below_glass((scenes.square("mirror", 0.2, 0.35), Lobe(LobeKind.GLOSSY)))
     scene.camera.matrix = scenes.looking((0, -0.5, 0.1), (0, 0, 0.35))
     passes = renderer.render(scene).frame.passes
     mirrored = passes["Glossy Indirect"][6:10, 6:10]

@@ -91,7 +91,6 @@ def test_the_noise_told_is_that_there_is(mapper):
         told.append(errors_of(pictures[-1], mapper.state().half).mean())
     mean = np.mean(pictures, axis=0, dtype=np.float64)
     there = math.sqrt(seeds / (seeds - 1)) * np.mean([errors_of(mean, picture[..., :3]) for picture in pictures])
-    print(np.mean(told) / there)
     assert 0.85 * there < np.mean(told) < 1.15 * math.sqrt(2.0) * there
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated
 from support.families import some_each_time
 from support.lobes import Lobe, LobeKind, image_world, material
 from test_light_sources import LIGHTS, floor_scene
@@ -17,7 +18,7 @@ from rppm_addon.integrator.common.records.photon_paths import PHOTON_PATH
 from rppm_addon.integrator.common.records.photons import PHOTON_CONTRIBUTED
 from rppm_addon.integrator.common.records.rays import RAY
 from rppm_addon.integrator.lights import guide
-from rppm_addon.scene import DirectLight, Image, Instance, Light, LightKind, Scene, World
+from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene, World
 
 
 def lit_floor(name: str, aimed: bool) -> Scene:
@@ -25,14 +26,11 @@ def lit_floor(name: str, aimed: bool) -> Scene:
     world = World(np.array([1.0, 2.0, 3.0])) if name == "world" else None
     scene = floor_scene(LIGHTS.get(name), DirectLight.PHOTONS, world)
     if name == "image":
-        v, u = np.meshgrid((np.arange(16) + 0.5) / 16, (np.arange(32) + 0.5) / 32, indexing="ij")
-        glow = 0.2 + 20 * np.exp(-((u - 0.5) ** 2 + (v - 0.75) ** 2) / 0.02)
-        scene.images = [Image("sky", np.stack([glow, glow, glow, np.ones_like(u)], -1).astype(np.float32))]
+        scene.images = [scenes.sky_with_a_sun(16, 0.02)]
         scene.world = image_world(0)
     if name == "mesh":
-        scene.meshes.append(scenes.sphere("light", 8, 4))
-        scene.materials.append(material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
-        scene.instances.append(Instance(1, scenes.placed(0, 0, 2, 0.3), [1]))
+        glow = material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5)))
+        scenes.add(scene, scenes.sphere("light", 8, 4), glow, scenes.placed(0, 0, 2, 0.3))
     if aimed:
         scene.materials.append(material("air", Lobe(LobeKind.REFRACTION, ior=1.0)))
         scene.meshes.append(scenes.sphere("ball"))
@@ -83,7 +81,6 @@ def test_any_guide_emits_the_same_light(mapper, name, aimed):
     difference = guided.mean(axis=0) - plain.mean(axis=0)
     limit = 5 * error + 1e-5 * plain[:, 0].mean()  # a point light's origin does not vary but for rounding
     worst = (abs(difference) / limit).max()
-    print(name, aimed, np.round(guided.mean(axis=0)[:7] / plain.mean(axis=0)[0], 4), f"worst {worst:.2f} of its limit")
     assert (error < 0.02 * plain[:, 0].mean() * np.maximum(1.0, abs(plain.mean(axis=0) / plain[:, 0].mean()))).all()
     assert worst < 1
 
@@ -115,19 +112,12 @@ def test_photons_learn_to_find_a_hole(mapper, monkeypatch):
         for seed in range(4):
             scene = lit_through_a_hole()
             scene.settings.seed = seed
-            mapper.build(scene)
-            for _ in range(32):
-                mapper.iterate()
+            iterated(mapper, scene, 32)
             photons = mapper.read_photons()
             useful += float((photons["depth"] & PHOTON_CONTRIBUTED != 0).any(axis=0).mean()) / 4
             means.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
-        results[learning] = (
-            np.mean(means),
-            np.std(means, ddof=1) / 2,
-            useful,
-            mapper.learning.radius_schedule.wide_radius,
-        )
-        print(learning, results[learning])
+        radius = mapper.learning.radius_schedule.wide_radius
+        results[learning] = np.mean(means), np.std(means, ddof=1) / 2, useful, radius
     (plain, plain_error, plain_useful, plain_radius), (guided, guided_error, useful, radius) = results.values()
     assert abs(guided - plain) < 4 * math.hypot(plain_error, guided_error) + 0.01 * plain
     assert useful > 5 * plain_useful

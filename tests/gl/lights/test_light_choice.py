@@ -6,23 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scenes
+from rendering import radiance_of
 from support.lobes import Lobe, LobeKind, material
 from test_light_sampling import light_samples
 from test_light_sources import floor_scene
 
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
-from rppm_addon.scene import DirectLight, Instance, Light, LightKind, World
+from rppm_addon.scene import DirectLight, Light, LightKind, World
 
 Record(
-    "LightChoicesParameters",
-    count="uint",
-    point="vec3",
-    normal="vec3",
-    both_sides="uint",
-    looks_at_lights="uint",
+    "LightChoicesParameters", count="uint", point="vec3", normal="vec3", both_sides="uint", looks_at_lights="uint",
     reach="float",
-)
+)  # fmt: skip
 SHADER = str(Path(__file__).parent / "light_choices.comp")
 CHOICES = 1 << 14
 
@@ -58,9 +54,8 @@ def crowded_scene(count: int, world: float = 0.1):
     """A floor under many lights and an emissive ball of triangles."""
     scene = floor_scene(None, DirectLight.RAYS, World(np.full(3, world)))
     scene.lights = lights_of_all_kinds(count)
-    scene.meshes.append(scenes.sphere("ball", 8, 4))
-    scene.materials.append(material("shining", Lobe(LobeKind.EMISSION, color=(1, 1, 1))))
-    scene.instances.append(Instance(1, scenes.placed(0.4, 0.3, 0.9, 0.2), [1]))
+    glow = material("shining", Lobe(LobeKind.EMISSION, color=(1, 1, 1)))
+    scenes.add(scene, scenes.sphere("ball", 8, 4), glow, scenes.placed(0.4, 0.3, 0.9, 0.2))
     return scene
 
 
@@ -70,11 +65,8 @@ def run(mapper, library, **parameters) -> np.ndarray:
     context = mapper.device_scene.context
     context.begin(Iteration(1, seed=3))
     unset = {"point": np.zeros(3), "normal": np.zeros(3), "both_sides": 0, "looks_at_lights": 0, "reach": 0.0}
-    library.compute(SHADER).run(
-        CHOICES,
-        {**context.blocks, "Results": results},
-        {"count": CHOICES, **unset, **parameters},
-    )
+    blocks, values = {**context.blocks, "Results": results}, {"count": CHOICES, **unset, **parameters}
+    library.compute(SHADER).run(CHOICES, blocks, values)
     table = np.frombuffer(results.read(), np.float32).reshape(CHOICES, 4).copy()
     results.release()
     return table
@@ -132,10 +124,7 @@ def errors(mapper, scene, iterations: int, runs: int) -> float:
     pictures = []
     for seed in range(runs):
         scene.settings = scene.settings.with_values(seed=seed, radius_maximum=0.05, photons=256)
-        mapper.build(scene)
-        for _ in range(iterations):
-            mapper.iterate()
-        pictures.append(mapper.film.read_radiance()[..., :3].mean(axis=-1))
+        pictures.append(radiance_of(mapper, scene, iterations)[..., :3].mean(axis=-1))
     pictures = np.array(pictures, np.float64)
     return float((pictures.var(axis=0, ddof=1) / pictures.mean(axis=0) ** 2).mean())
 
@@ -149,12 +138,10 @@ def test_a_faint_world_adds_no_noise(mapper):
         errors(mapper, floor_scene(LIGHT, DirectLight.RAYS, World(np.full(3, radiance)), size=16), 8, 8)
         for radiance in (0.0, 0.05)
     )
-    print(f"relative variance of 8 iterations: black world {dark:.2e}, gray world {gray:.2e}")
     assert gray < 2 * dark + 1e-6
 
 
 def test_points_on_a_light_keep_their_order_over_the_iterations(mapper):
     """Owen-scrambled points in two dimensions: the variance falls faster than with N^-1.4, at random N^-1."""
     few, many = (errors(mapper, floor_scene(LIGHT, DirectLight.RAYS, size=16), n, 8) for n in (4, 32))
-    print(f"relative variance: 4 iterations {few:.2e}, 32 iterations {many:.2e}, power {np.log2(few / many) / 3:.2f}")
     assert many < few * 8**-1.4

@@ -15,8 +15,7 @@ from test_light_sources import floor_scene
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.lights.light_entry import spread_constants
-from rppm_addon.integrator.progressive import ProgressivePhotonMapper
-from rppm_addon.scene import DirectLight, Instance, Light, LightKind, Scene
+from rppm_addon.scene import DirectLight, Light, LightKind, Scene
 
 Record("SphericalTriangleParameters", count="uint", samples="uint")
 Record("LightSamplesParameters", count="uint", point="vec3", emitted="float")
@@ -117,10 +116,8 @@ def test_triangles_are_sampled_evenly_in_solid_angle(context, library):
         products = np.linalg.norm(corners[0]) * np.prod(np.linalg.norm(edges, axis=1))
         assert angle == pytest.approx(expected, rel=1e-4 + 4e-7 * products / abs(corners[0] @ normal)), name
         size = np.linalg.norm(corners, axis=1).max()
-        assert (
-            np.abs(directions @ normal / np.linalg.norm(normal) - corners[0] @ normal / np.linalg.norm(normal)).max()
-            < 2e-6 * size
-        )
+        height = normal / np.linalg.norm(normal)
+        assert np.abs(directions @ height - corners[0] @ height).max() < 2e-6 * size
         shares = solid_angles(parts_of(corners)) / expected
         assert shares.sum() == pytest.approx(1, abs=1e-6)
         counts = np.bincount(part_numbers(corners, directions), minlength=PARTS**2)
@@ -129,7 +126,6 @@ def test_triangles_are_sampled_evenly_in_solid_angle(context, library):
         statistic = ((merged[0] - merged[1]) ** 2 / np.maximum(merged[1], 1)).sum()
         statistics.append(statistic)
         assert statistic < 50, f"{name}: {statistic} {counts} {shares * SAMPLES}"
-    print(f"chi-square of {len(cases)} triangles: mean {np.mean(statistics):.1f}, most {max(statistics):.1f}")
 
 
 def test_degenerate_triangles_give_no_nan(context, library):
@@ -159,35 +155,27 @@ EMITTERS = {
 POINTS = {"below": (0.1, 0.05, 0.0), "far": (-3.0, 1.0, -7.0), "near": (0.3, -0.2, 0.97), "beside": (0.7, 0.1, 0.96)}
 
 
-@pytest.fixture
-def mapper(context, library):
-    mapper = ProgressivePhotonMapper(context, library)
-    yield mapper
-    mapper.release()
-
-
 def light_samples(mapper, library, point, count: int = SAMPLES, emitted: float = 0.0) -> dict[str, np.ndarray]:
-    """Samples of the scene's first light from a point: direction, distance, weight, pdf, seen, seen_pdf."""
+    """Samples of the scene's first light from a point: direction, distance, weight, pdf, seen, seen_pdf; and what of
+    them is received on a plane that faces up."""
     results = mapper.context.moderngl.buffer(reserve=48 * count)
     context = mapper.device_scene.context
     context.begin(Iteration(1, seed=3))
-    library.compute(str(FOLDER / "light_samples.comp")).run(
-        count,
-        {**context.blocks, "Results": results},
-        {
-            "count": count,
-            "point": point,
-            "emitted": emitted,
-        },
-    )
+    blocks, values = {**context.blocks, "Results": results}, {"count": count, "point": point, "emitted": emitted}
+    library.compute(str(FOLDER / "light_samples.comp")).run(count, blocks, values)
     table = np.frombuffer(results.read(), np.float32).reshape(count, 3, 4).astype(np.float64)
     results.release()
     assert np.isfinite(table).all()
     (direction, weight, seen), (distance, pdf, seen_pdf) = table[..., :3].swapaxes(0, 1), table[..., 3].T
     return {
         "direction": direction, "distance": distance, "weight": weight, "pdf": pdf,
-        "seen": seen, "seen_pdf": seen_pdf,
+        "seen": seen, "seen_pdf": seen_pdf, "received": weight[:, 0] * direction[:, 2],
     }  # fmt: skip
+
+
+def assert_mean(received: np.ndarray, expected: float, tolerance: float) -> None:
+    """Within 4.5 standard errors and a relative tolerance."""
+    assert abs(received.mean() - expected) < 4.5 * received.std() / math.sqrt(SAMPLES) + tolerance * expected
 
 
 @pytest.mark.parametrize("where", POINTS)
@@ -213,29 +201,20 @@ def test_area_lights_give_their_irradiance(mapper, library, name, where):
     """On a plane that faces up, against Lambert's closed form."""
     light = EMITTERS[name]
     mapper.build(floor_scene(light, DirectLight.RAYS))
-    sample = light_samples(mapper, library, POINTS[where])
-    received = sample["weight"][:, 0] * sample["direction"][:, 2]
     corners = np.array([(x * 0.4, y * 0.25, 0, 1) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]) @ light.matrix.T
     expected = 5 * irradiance(corners[:, :3] - POINTS[where], np.array([0, 0, 1.0]))
-    error = received.std() / math.sqrt(SAMPLES)
-    print(f"{name} {where}: {received.mean():.5f} closed form {expected:.5f} +- {error:.5f}")
-    assert abs(received.mean() - expected) < 4.5 * error + 1e-4 * expected
+    assert_mean(light_samples(mapper, library, POINTS[where])["received"], expected, 1e-4)
 
 
 @pytest.mark.parametrize("where", POINTS)
 def test_an_ellipse_gives_the_irradiance_of_its_area(mapper, library, where):
     """Against the light summed over the ellipse by rings, on either side of where the sampling changes."""
     mapper.build(floor_scene(EMITTERS["ellipse"], DirectLight.RAYS))
-    sample = light_samples(mapper, library, POINTS[where])
-    received = sample["weight"][:, 0] * sample["direction"][:, 2]
     rings, spokes = np.meshgrid(np.sqrt((np.arange(800) + 0.5) / 800), 2 * np.pi * (np.arange(800) + 0.5) / 800)
     places = np.stack([0.4 * rings * np.cos(spokes), 0.25 * rings * np.sin(spokes), np.ones_like(rings)], -1)
     offset = places - POINTS[where]
-    squared = (offset**2).sum(-1)
-    expected = 5 * np.pi * 0.4 * 0.25 * (offset[..., 2] ** 2 / squared**2).mean()
-    error = received.std() / math.sqrt(SAMPLES)
-    print(f"{where}: {received.mean():.5f} by rings {expected:.5f} +- {error:.5f}")
-    assert abs(received.mean() - expected) < 4.5 * error + 1e-3 * expected
+    expected = 5 * np.pi * 0.4 * 0.25 * (offset[..., 2] ** 2 / (offset**2).sum(-1) ** 2).mean()
+    assert_mean(light_samples(mapper, library, POINTS[where])["received"], expected, 1e-3)
 
 
 # Below the middle of the light, its side and its corner, within and beyond them, and farther away than it is wide.
@@ -285,7 +264,7 @@ def test_a_narrow_spread_is_sampled_where_it_shines(mapper, library, name, degre
     mapper.build(floor_scene(light, DirectLight.RAYS))
     for where, point in BELOW.items():
         sample = light_samples(mapper, library, point)
-        received = sample["weight"][:, 0] * sample["direction"][:, 2]
+        received = sample["received"]
         if where == "behind":
             assert not received.any()
             continue
@@ -293,11 +272,8 @@ def test_a_narrow_spread_is_sampled_where_it_shines(mapper, library, name, degre
         if expected == 0:
             assert not received.any()
             continue
-        error = received.std() / math.sqrt(SAMPLES)
         relative, of_whole = received.var() / expected**2, variance_of_whole / expected**2
-        print(f"{name} {degrees} {where}: {received.mean():.6f} by rings {expected:.6f} +- {error:.6f}")
-        print(f"  relative variance {relative:.5f}, of all the light {of_whole:.3f}")
-        assert abs(received.mean() - expected) < 4.5 * error + 2e-3 * expected
+        assert_mean(received, expected, 2e-3)
         if degrees <= 10 and point[2] >= 0.7:
             assert relative <= 0.5 * of_whole
         if all_on_light and tangent <= 2:
@@ -318,9 +294,8 @@ def test_a_narrow_spread_is_sampled_where_it_shines(mapper, library, name, degre
 def walled_scene() -> Scene:
     """A floor and a wall of side 1 at its edge that emits 1."""
     scene = floor_scene(None, DirectLight.RAYS)
-    scene.meshes.append(scenes.rectangle("wall", (0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)))
-    scene.materials.append(material("wall", Lobe(LobeKind.EMISSION, color=(1, 1, 1))))
-    scene.instances.append(Instance(1, np.eye(4), [1]))
+    glow = material("wall", Lobe(LobeKind.EMISSION, color=(1, 1, 1)))
+    scenes.add(scene, scenes.rectangle("wall", (0, -0.5, 0), (0, 0.5, 0), (0, 0.5, 1), (0, -0.5, 1)), glow)
     return scene
 
 
@@ -334,9 +309,9 @@ def test_the_variance_beside_an_emissive_wall_is_bounded(mapper, library):
         point = np.array([distance, 0.1, 0.0])
         sample = light_samples(mapper, library, point, emitted=1.0)
         np.testing.assert_allclose(sample["seen_pdf"], sample["pdf"], rtol=2e-4)
-        received = sample["weight"][:, 0] * sample["direction"][:, 2]
+        received = sample["received"]
         expected = irradiance(corners - point, np.array([0, 0, 1.0]))
-        assert abs(received.mean() - expected) < 4.5 * received.std() / math.sqrt(SAMPLES) + 1e-4 * expected
+        assert_mean(received, expected, 1e-4)
         # Second moment by area, over cells that shrink toward the point's foot.
         edges = np.concatenate([-np.geomspace(0.6, 1e-5, 400), np.geomspace(1e-5, 0.4, 400)])
         heights = np.concatenate([[0], np.geomspace(1e-5, 1, 800)])
@@ -344,7 +319,6 @@ def test_the_variance_beside_an_emissive_wall_is_bounded(mapper, library):
         cells = np.outer(np.diff(heights), np.diff(edges))
         by_area = ((z * distance / (distance**2 + y**2 + z**2) ** 2) ** 2 * cells).sum() / expected**2 - 1
         by_angle = received.var() / expected**2
-        print(f"at {distance}: relative variance by solid angle {by_angle:.3f}, by area {by_area:.2f}")
         assert received.max() <= 2 * math.pi
         assert by_angle < 3
     assert by_area > 20 * by_angle

@@ -9,18 +9,8 @@ import scenes
 from support.families import some_each_time
 from support.lobes import Lobe, LobeKind, image_world, material
 
-from rppm_addon.scene import (
-    Camera,
-    DirectLight,
-    Image,
-    Instance,
-    Light,
-    LightKind,
-    NodeGraph,
-    RenderSettings,
-    Scene,
-    World,
-)  # fmt: skip
+from rppm_addon.scene import DirectLight, Light, LightKind, NodeGraph, World
+from rppm_addon.scene.images import Image
 
 
 def down(z: float) -> np.ndarray:
@@ -39,7 +29,7 @@ def by(kind: str, output: str) -> NodeGraph:
     return graph
 
 
-ONE = np.ones(3)
+ONE, PANEL = np.ones(3), scenes.square("glow", 0.4, 2.0)
 BY_NORMAL, BY_PLACE, BY_DIRECTION = by("tex_coord", "normal"), by("tex_coord", "object"), by("new_geometry", "incoming")
 LIGHTS = {
     "point": Light("point", LightKind.POINT, down(2), 3 * ONE),
@@ -61,32 +51,24 @@ LIGHTS = {
     ),
 }
 IRRADIANCE = {  # on the floor straight below, W/m^2
-    "point": 3 / 4,
-    "sphere": 3 / 4,
+    **dict.fromkeys(["point", "sphere", "spot"], 3 / 4),
+    **dict.fromkeys(["sun", "wide sun"], 2.0),
     "soft": 3 / (4 + 0.25),
-    "spot": 3 / 4,
-    "sun": 2.0,
-    "wide sun": 2.0,
     "disk": 5 * math.pi * 0.16 / (4 + 0.16),
     # Straight down, the mean of the colors 0.5, 0.5 and 1 is 2/3.
-    "mapped point": 3 / 4 * 2 / 3,
-    "mapped spot": 3 / 4 * 2 / 3,
+    **dict.fromkeys(["mapped point", "mapped spot"], 3 / 4 * 2 / 3),
 }
 
 
 def floor_scene(light, mode, world=None, albedo=0.5, size=32, h=2.0, window=0.6):
-    floor = scenes.rectangle("floor", (-h, -h, 0), (h, -h, 0), (h, h, 0), (-h, h, 0))
-    camera = Camera(scenes.looking((0, 0, 1.2), (0, 0, 0)), (-window, window, -window, window), size, size)
+    floor = scenes.square("floor", h), scenes.diffuse(albedo, albedo, albedo)
     # Shadow rays need no photons; those of a light tell 0.4 % of the mean in four iterations, the world's in sixteen.
     iterations = 4 if mode is DirectLight.PHOTONS and world is None else 16
     photons = 64 if mode is DirectLight.RAYS and world is None else 32768
-    settings = RenderSettings(
+    return scenes.scene_of(
+        scenes.camera((0, 0, 1.2), (0, 0, 0), window, size), floor, lights=[light] if light else [], world=world,
         iterations=iterations, photons=photons, direct_light=mode, photon_path_length=2, camera_path_length=2,
         radius_minimum=0.05, radius_maximum=0.05, filter_width=0.0,
-    )  # fmt: skip
-    return Scene(
-        camera, [floor], [Instance(0, np.eye(4), [0])], [scenes.diffuse(albedo, albedo, albedo)],
-        [light] if light else [], world or World(), settings=settings,
     )  # fmt: skip
 
 
@@ -105,8 +87,6 @@ def test_rays_and_photons_light_the_floor_alike(renderer, name):
             middle = frame.combined[14:18, 14:18, :3].mean()  # 18 cm around the point straight below
     expected = IRRADIANCE.get(name)
     closed = None if expected is None else 0.5 * expected / math.pi
-    print(f"{name}: rays {means[DirectLight.RAYS]:.5f} photons {means[DirectLight.PHOTONS]:.5f}")
-    print(f"below the light {middle:.5f} closed form {closed}")
     assert means[DirectLight.PHOTONS] == pytest.approx(means[DirectLight.RAYS], rel=0.02)
     if closed is not None:
         assert middle == pytest.approx(closed, rel=0.012)
@@ -129,24 +109,18 @@ def test_a_world_image_lights_by_direction(renderer):
         scene = floor_scene(None, mode, image_world(0), h=0.5, window=0.15)
         scene.images = [Image("sky", pixels)]
         mean = renderer.render(scene).frame.combined[..., :3].mean((0, 1))
-        print(mode, mean / expected)
         np.testing.assert_allclose(mean, expected, rtol=0.02)
 
 
-@pytest.mark.parametrize("kind", [LobeKind.EMISSION, LobeKind.PRINCIPLED])
-def test_an_emissive_mesh_lights_as_an_area_light(renderer, kind):
-    lobe = (
-        Lobe(kind, color=(5, 5, 5))
-        if kind is LobeKind.EMISSION
-        else Lobe(kind, color=(0, 0, 0), specular_ior_level=0, emission_color=(5, 5, 5), emission_strength=1.0)
-    )
-    panel = scenes.rectangle("glow", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2))
+@pytest.mark.parametrize("lobe", [
+    Lobe(LobeKind.EMISSION, color=(5, 5, 5)),
+    Lobe(LobeKind.PRINCIPLED, color=(0, 0, 0), specular_ior_level=0, emission_color=(5, 5, 5), emission_strength=1.0),
+], ids=["emission", "principled"])  # fmt: skip
+def test_an_emissive_mesh_lights_as_an_area_light(renderer, lobe):
     reference = renderer.render(floor_scene(LIGHTS["square"], DirectLight.RAYS)).frame.combined[..., :3].mean()
     for mode in DirectLight:
         scene = floor_scene(None, mode)
-        scene.meshes.append(panel)
-        scene.materials.append(material("light", lobe))
-        scene.instances.append(Instance(1, np.eye(4), [1]))
+        scenes.add(scene, PANEL, material("light", lobe))
         assert renderer.render(scene).frame.combined[..., :3].mean() == pytest.approx(reference, rel=0.02)
 
 
@@ -161,7 +135,6 @@ def test_photons_carry_the_power(renderer, name):
         "sun": 2 * math.pi * radius**2, "wide sun": 2 * math.pi * radius**2 * 2 / (1 + math.cos(0.15)),
         "square": 5 * math.pi * 0.64, "disk": 5 * math.pi**2 * 0.16, "spread": 5 * math.pi * 0.09,
     }  # fmt: skip
-    print(name, balance)
     if name in power:
         assert balance["emitted"] == pytest.approx(3 * power[name], rel=2e-3)
     assert_balanced(balance)
@@ -175,23 +148,13 @@ def test_aiming_moves_no_energy(renderer, name):
     """A ball of no refraction changes nothing but where photons are sent."""
     world = World(np.array([1.0, 2.0, 3.0])) if name == "world" else None
 
-    def scene():
-        made = floor_scene(LIGHTS.get(name), DirectLight.PHOTONS, world)
-        made.settings.photon_path_length = made.settings.camera_path_length = 4
-        if name == "mesh":
-            made.meshes.append(scenes.rectangle("glow", (-0.4, -0.4, 2), (0.4, -0.4, 2), (0.4, 0.4, 2), (-0.4, 0.4, 2)))
-            made.materials.append(material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
-            made.instances.append(Instance(1, np.eye(4), [1]))
-        return made
-
-    plain = renderer.render(scene()).frame.combined[..., :3].mean()
-    aimed_scene = scene()
-    ball = len(aimed_scene.meshes)
-    aimed_scene.meshes.append(scenes.sphere("ball"))
-    aimed_scene.materials.append(material("air", Lobe(LobeKind.REFRACTION, ior=1.0)))
-    aimed_scene.instances.append(Instance(ball, scenes.placed(0.2, 0.1, 0.5, 0.2), [len(aimed_scene.materials) - 1]))
-    result = renderer.render(aimed_scene)
-    aimed = result.frame.combined[..., :3].mean()
-    print(f"{name}: plain {plain:.5f} aimed {aimed:.5f} ratio {aimed / plain:.4f}")
-    assert aimed == pytest.approx(plain, rel=0.02)
+    scene = floor_scene(LIGHTS.get(name), DirectLight.PHOTONS, world)
+    scene.settings.photon_path_length = scene.settings.camera_path_length = 4
+    if name == "mesh":
+        scenes.add(scene, PANEL, material("light", Lobe(LobeKind.EMISSION, color=(5, 5, 5))))
+    plain = renderer.render(scene).frame.combined[..., :3].mean()
+    air = material("air", Lobe(LobeKind.REFRACTION, ior=1.0))
+    scenes.add(scene, scenes.sphere("ball"), air, scenes.placed(0.2, 0.1, 0.5, 0.2))
+    result = renderer.render(scene)
+    assert result.frame.combined[..., :3].mean() == pytest.approx(plain, rel=0.02)
     assert_balanced(result.statistics.flux_watts)

@@ -10,11 +10,21 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
-from rppm_addon.scene import Light, LightKind, World
+from rppm_addon.scene import Light, LightKind, Scene, World
 
 SETTINGS = {
-    "photons": 4000, "photon_path_length": 1, "camera_path_length": 1, "iterations": 1, "use_final_gather": False,
-}  # fmt: skip
+    "photons": 4000,
+    "iterations": 1,
+    "photon_path_length": 1,
+    "camera_path_length": 1,
+    "use_final_gather": False,
+}
+
+
+def told(renderer, scene: Scene) -> tuple[dict[str, float], dict[str, int]]:
+    """Watts and photons of each source."""
+    statistics = renderer.render(scene).statistics.photon_statistics
+    return statistics.source_watts, statistics.source_photons
 
 
 def test_sources_have_their_power_and_photons(renderer):
@@ -25,8 +35,7 @@ def test_sources_have_their_power_and_photons(renderer):
     scene.lights.append(dataclasses.replace(point, name="point", strength=np.zeros(3)))  # gives no light
     scene.materials[3] = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)))
     scene.world = World(np.full(3, 0.01))
-    statistics = renderer.render(scene).statistics
-    watts, photons = statistics.photon_statistics.source_watts, statistics.photon_statistics.source_photons
+    watts, photons = told(renderer, scene)
     assert set(watts) == set(photons) == {source_name("light"), source_name("point"), SURFACES, ENVIRONMENT}
     assert watts[source_name("light")] == pytest.approx(math.pi * 12 * 0.25, rel=1e-3)
     assert watts[source_name("point")] == pytest.approx(4 * math.pi * 12 / 32, rel=1e-6)
@@ -45,26 +54,20 @@ def test_a_lamp_keeps_photons_beside_a_far_larger_world(renderer):
     """The room in a world a million times as powerful: half of an eighth of the photons is the lamp's."""
     scene = scenes.room(8, **SETTINGS)
     scene.world = World(np.full(3, 1e5))
-    statistics = renderer.render(scene).statistics
-    assert (
-        statistics.photon_statistics.source_watts[ENVIRONMENT]
-        > 1e6 * statistics.photon_statistics.source_watts[source_name("light")]
-    )
-    assert statistics.photon_statistics.source_photons[source_name("light")] == pytest.approx(4000 / 16, abs=1.0)
+    watts, photons = told(renderer, scene)
+    assert watts[ENVIRONMENT] > 1e6 * watts[source_name("light")]
+    assert photons[source_name("light")] == pytest.approx(4000 / 16, abs=1.0)
 
 
 def test_lights_of_one_name_are_one_source(renderer):
     scene = scenes.room(8, **SETTINGS)
     scene.lights.append(scene.lights[0])
-    statistics = renderer.render(scene).statistics
-    assert statistics.photon_statistics.source_photons == {source_name("light"): 4000}
-    assert statistics.photon_statistics.source_watts[source_name("light")] == pytest.approx(
-        2 * math.pi * 12 * 0.25, rel=1e-3
-    )
+    watts, photons = told(renderer, scene)
+    assert photons == {source_name("light"): 4000}
+    assert watts[source_name("light")] == pytest.approx(2 * math.pi * 12 * 0.25, rel=1e-3)
 
 
 def test_a_dark_scene_has_no_sources(renderer):
     scene = scenes.room(8, **SETTINGS)
     scene.lights.clear()
-    statistics = renderer.render(scene).statistics
-    assert statistics.photon_statistics.source_watts == statistics.photon_statistics.source_photons == {}
+    assert told(renderer, scene) == ({}, {})

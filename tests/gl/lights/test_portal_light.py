@@ -9,8 +9,9 @@ import pytest
 import scenes
 from openings import BLACK, FLOOR, HEIGHT, HOLE, hole_form_factor, room, uneven_sky, with_pane
 from path_comparison import judge, picture_by_seed
+from rendering import iterated
 from support.lobes import Lobe, LobeKind, image_world, material
-from support.render_states import assert_same_state
+from support.render_states import assert_goes_on
 from test_guided_photons import emitted_moments
 from test_light_sampling import FOLDER, Iteration
 
@@ -73,12 +74,11 @@ def test_the_pdf_of_shadow_rays_is_that_of_their_samples(mapper, library, sky):
         direction, pdf = samples[:, :3], samples[:, 7]
         taken = pdf > 0.0  # of the corners around an ellipse nothing is
         whole = 4 * math.pi * even[:, 3]
-        for k, (axis, threshold) in enumerate([((1, 0, 0), 0.1), ((0, 0.6, 0.8), 0.2), ((-0.6, 0, 0.8), 0.9)]):
+        for axis, threshold in (((1, 0, 0), 0.1), ((0, 0.6, 0.8), 0.2), ((-0.6, 0, 0.8), 0.9)):
             expected = whole * (even[:, :3] @ axis > threshold)
             found = (taken & (direction @ axis > threshold)).astype(float)
             error = math.sqrt((expected.var() + found.var()) / SAMPLES)
             difference = found.mean() - expected.mean()
-            print(point, sky, k, f"{found.mean():.4f} {difference:+.4f} +- {error:.4f}")
             assert abs(difference) < 4 * error + 1e-4
         inverse = np.where(taken, 1.0 / np.maximum(pdf, 1e-30), 0.0)  # all directions have one
         assert inverse.mean() == pytest.approx(4 * math.pi, abs=5 * inverse.std() / math.sqrt(SAMPLES))
@@ -108,9 +108,6 @@ def test_photons_through_portals_emit_the_same_light(mapper, name, sky):
         through = emitted_moments(mapper, 8)
         error = np.sqrt((plain.var(axis=0, ddof=1) + through.var(axis=0, ddof=1)) / 8)
         worst = (abs(through.mean(axis=0) - plain.mean(axis=0)) / (5 * error + 1e-4 * plain[:, 0].mean())).max()
-        print(
-            name, sky, guided, f"flux {through[:, 0].mean() / plain[:, 0].mean():.4f}, worst {worst:.2f} of its limit"
-        )
         assert worst < 1.0 and (error[0] < 0.02 * plain[:, 0].mean()).all()
 
 
@@ -149,7 +146,6 @@ def test_panes_without_shadow_behind_portals_change_nothing(mapper, behind):
     seen_through = picture_by_seed(mapper, f"pane {behind}", with_pane(scene, low, HEIGHT + 1e-3), seeds)
     assert (mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0) == (behind == "photons")
     change = seen_through.mean(axis=(1, 2, 3)) / plain - 1.0
-    print(behind, plain.mean(), change)
     assert abs(change.mean()) < 5 * change.std(ddof=1) / math.sqrt(seeds) + 1e-3
 
 
@@ -175,8 +171,7 @@ def test_updates_show_what_builds_do(mapper, other_mapper, monkeypatch):
 def test_portals_of_a_black_world_are_none(mapper):
     scene = with_portals("in the hole", photons=64)
     scene.world.radiance = np.zeros(3)
-    mapper.build(scene)
-    mapper.iterate()
+    iterated(mapper, scene)
     assert len(mapper.device_scene.lights.portals.records) == 0
     assert not mapper.film.read_radiance()[..., :3].any()
 
@@ -186,9 +181,7 @@ def test_portals_of_a_world_that_takes_light_away_are_as_good(mapper):
     for sign in (1.0, -1.0):
         scene = with_portals("in the hole", photons=1024)
         scene.world.radiance = sign * np.ones(3)
-        mapper.build(scene)
-        for _ in range(2):
-            mapper.iterate()
+        iterated(mapper, scene, 2)
         assert len(mapper.device_scene.lights.portals.records) == 1
         seen.append(mapper.film.read_radiance()[..., :3])
     np.testing.assert_allclose(-seen[1], seen[0], rtol=1e-3, atol=1e-5)
@@ -198,14 +191,4 @@ def test_portals_of_a_world_that_takes_light_away_are_as_good(mapper):
 def test_it_goes_on_bit_for_bit(mapper, other_mapper):
     """With what was learned of how many photons portals get."""
     scene = with_portals("a part of it", photons=1 << 12)
-    mapper.build(scene)
-    states = []
-    for _ in range(5):
-        mapper.iterate()
-        states.append(mapper.state())
-    for state in (states[0], states[2]):
-        other_mapper.build(scene)
-        other_mapper.resume(state)
-        while other_mapper.iteration < 5:
-            other_mapper.iterate()
-        assert_same_state(other_mapper.state(), states[-1])
+    assert_goes_on(mapper, scene, iterations=5, stops=(1, 3), other=other_mapper)

@@ -8,6 +8,8 @@ import logging
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated, radiance_of
+from support import every_node
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.materials.compiler import compiler
@@ -35,9 +37,7 @@ def shown(*graphs: NodeGraph) -> Scene:
 
 
 def picture(mapper: ProgressivePhotonMapper, scene: Scene) -> np.ndarray:
-    mapper.build(scene)
-    mapper.iterate()
-    radiance = mapper.film.read_radiance()
+    radiance = radiance_of(mapper, scene)
     assert np.isfinite(radiance).all()
     return radiance[..., :3]
 
@@ -201,10 +201,24 @@ def test_bump_turns_the_normal_by_the_slope_of_its_height(mapper):
     scene.settings.filter_width = 0.0
     floor = scene.instances[0]
     scene.instances, floor.materials = [floor], [len(scene.materials) - 1]
-    mapper.build(scene)
-    mapper.iterate()
+    iterated(mapper, scene)
     depth, normals = mapper.film.read_passes().values()
     seen = (normals[..., 2] > 0.99) & (depth < 1e9)
     found = 2.0 * mapper.film.read_radiance()[seen][:, :3] - 1.0
     assert seen.sum() > 10
     np.testing.assert_allclose(found, np.tile([-slope, 0.0, 1.0] / np.hypot(1.0, slope), (seen.sum(), 1)), atol=2e-3)
+
+
+NODES = every_node.programs()
+
+
+@pytest.mark.parametrize("source", every_node.SOURCES)
+def test_kinds_of_a_file_compile(library, source):
+    library.compute("surfaces/resolve/resolve.comp", inserts={"materials/generated.glsl": NODES[source]})
+
+
+def test_kinds_have_no_names_in_common(library):
+    """All files in one program: no function or constant may have the name of another's."""
+    text = "".join(f'#include "materials/nodes/{source}"\n' for source in every_node.SOURCES)
+    text += "void evaluate_material(Surface surface, uint first, inout ClosureBuilder builder) {}\n"
+    library.compute("surfaces/resolve/resolve.comp", inserts={"materials/generated.glsl": text})

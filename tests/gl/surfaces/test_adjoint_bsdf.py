@@ -6,10 +6,11 @@ import math
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, RenderSettings, Scene
+from rppm_addon.scene import Light, LightKind, Material
 
 ANGLE = math.radians(50.0)
 """Angle of the sun to the floor's normal, radians."""
@@ -24,11 +25,10 @@ LOBES = {
     "rough glass": [Lobe(LobeKind.GLASS, roughness=0.5, multiscatter=False)],
     "rough refraction": [Lobe(LobeKind.REFRACTION, roughness=0.3)],
     "coated": [
-        Lobe(LobeKind.DIFFUSE, weight=0.5),
-        Lobe(LobeKind.GLOSSY, weight=0.3, roughness=0.3, multiscatter=False),
-        Lobe(LobeKind.GLOSSY, weight=0.2),
+        Lobe(LobeKind.DIFFUSE, 0.5), Lobe(LobeKind.GLOSSY, 0.3, roughness=0.3, multiscatter=False),
+        Lobe(LobeKind.GLOSSY, 0.2),
     ],
-}
+}  # fmt: skip
 
 
 def facing_mix(lobes: list[Lobe]) -> Material:
@@ -42,20 +42,10 @@ def facing_mix(lobes: list[Lobe]) -> Material:
 
 def scattered(mapper, surface: Material) -> tuple[np.ndarray, np.ndarray]:
     """(photons, 3) flux that goes on from a sunlit floor over that which comes to it, and the cosines to its normal."""
-    floor = scenes.rectangle("floor", (-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0))
-    camera = Camera(scenes.looking((0, -1, 3), (0, 0, 0)), (-0.3, 0.3, -0.3, 0.3), 8, 8)
-    sun = scenes.looking((0, 0, 0), (math.sin(ANGLE), 0, -math.cos(ANGLE)))
-    mapper.build(
-        Scene(
-            camera,
-            [floor],
-            [Instance(0, np.eye(4), [0])],
-            [surface],
-            [Light("sun", LightKind.SUN, sun, np.ones(3))],
-            settings=RenderSettings(photons=131072, photon_path_length=2),
-        )
-    )
-    mapper.iterate()
+    camera = scenes.camera((0, -1, 3), (0, 0, 0), 0.3, 8)
+    sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), (math.sin(ANGLE), 0, -math.cos(ANGLE))), np.ones(3))
+    floor = scenes.square("floor", 2.0), surface
+    iterated(mapper, scenes.scene_of(camera, floor, lights=[sun], photons=131072, photon_path_length=2))
     first, second = mapper.read_photons()
     arrived = (first["flags"] & PhotonFlag.ACTIVE != 0) & (first["flags"] & PhotonFlag.ESCAPED == 0)
     share = second["flux"][arrived] / first["flux"][arrived].mean(axis=0)
@@ -69,6 +59,5 @@ def test_light_leaves_by_what_is_seen_from_there(mapper, name):
     expected = plain * (1 - cosines[:, None])
     shown, _ = scattered(mapper, facing_mix(LOBES[name]))
     error = np.sqrt(expected.var(axis=0) / len(expected) + shown.var(axis=0) / len(shown))
-    print(f"\n{name}: {shown.mean(axis=0)}, expected {expected.mean(axis=0)} +- {error}")
     assert np.all(error <= 0.01 * expected.mean(axis=0))
     assert np.all(np.abs(shown.mean(axis=0) - expected.mean(axis=0)) <= 4 * error)

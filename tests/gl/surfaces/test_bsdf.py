@@ -34,38 +34,13 @@ class Lobe:
     expected: np.ndarray
 
 
-def run(
-    context,
-    library,
-    kind,
-    alpha,
-    ior,
-    cosine,
-    radiance=1,
-    weight=(1, 1, 1),
-    f0=(1, 1, 1),
-    tint=(1, 1, 1),
-    aspect=1.0,
-    beckmann=False,
-    defines=None,
-) -> Lobe:
+def run(context, library, kind, alpha, ior, cosine, radiance=1, defines=None, **values) -> Lobe:
+    """Samples and evaluations of a lobe seen at a cosine; values: further parameters of the shader."""
+    white = dict.fromkeys(("weight", "f0", "tint"), (1, 1, 1))
+    lobe = {"kind": kind, "alpha": alpha, "ior": ior, "cosine": cosine, "radiance": radiance, "count": COUNT}
     results = context.moderngl.buffer(reserve=80 * COUNT)
     library.compute(SHADER, defines or {}).run(
-        COUNT,
-        {"Results": results},
-        {
-            "weight": weight,
-            "count": COUNT,
-            "f0": f0,
-            "kind": kind,
-            "tint": tint,
-            "alpha": alpha,
-            "ior": ior,
-            "cosine": cosine,
-            "aspect": aspect,
-            "radiance": radiance,
-            "beckmann": beckmann,
-        },
+        COUNT, {"Results": results}, {"aspect": 1.0, "beckmann": False, **white, **lobe, **values}
     )
     table = np.frombuffer(results.read(), np.float32).reshape(COUNT, 20)
     results.release()
@@ -80,7 +55,6 @@ def assert_equal_means(sampled, evaluated, what):
     means = sampled.mean(), evaluated.mean()
     variances = (values @ values / COUNT - mean**2 for values, mean in zip((sampled, evaluated), means))
     error = np.sqrt(max(sum(variances), 0.0) / COUNT)
-    print(f"{what}: sampled {means[0]:.5f} evaluated {means[1]:.5f} +- {error:.5f}")
     assert abs(means[0] - means[1]) < 4.5 * error + 1e-6, what
 
 

@@ -6,27 +6,14 @@ import weakref
 
 import numpy as np
 import pytest
+from rendering import radiance_of
 
 from rppm_addon.integrator.surfaces.displacement import Displacement
 from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.materials.tables import MaterialTables
-from rppm_addon.scene import (
-    AttributeDomain,
-    Camera,
-    Deformation,
-    Instance,
-    Light,
-    LightKind,
-    Material,
-    Mesh,
-    MeshAttribute,
-    NodeGraph,
-    RenderSettings,
-    Scene,
-    Shutter,
-    World,
-)
-from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED, Dicing
+from rppm_addon.scene import Deformation, Light, LightKind, Material, NodeGraph, RenderSettings, Scene, Shutter, World
+from rppm_addon.scene.camera import Camera
+from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED, AttributeDomain, Dicing, Instance, Mesh, MeshAttribute
 from rppm_addon.self_test.meshes import placed, polygons
 
 STEPS, WAVES, HEIGHT = 128, 6.0, 0.15
@@ -43,9 +30,16 @@ def grid(steps: int = STEPS) -> Mesh:
     return dataclasses.replace(mesh, corner_uv=np.stack([u, 0.0 * u], axis=-1).astype(np.float32))
 
 
+def plain(name: str = "Plain") -> Material:
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=(0.5, 0.5, 0.5))
+    return Material(name, graph)
+
+
 def waves(name: str = "Waves", height: float = HEIGHT, bump: bool = False, space: str = "OBJECT") -> Material:
     """Diffuse; height * sin(WAVES * x) by the object's x."""
-    graph = NodeGraph()
+    material = plain(name)
+    graph = material.graph
     x = graph.add("separate_xyz", "x", vector=graph.add("tex_coord", "object"))
     phase = graph.add("math", "value", options={"operation": "MULTIPLY"}, value=x, value_001=WAVES)
     sine = graph.add("math", "value", options={"operation": "SINE"}, value=phase)
@@ -55,14 +49,25 @@ def waves(name: str = "Waves", height: float = HEIGHT, bump: bool = False, space
     if bump:
         height = graph.add("displacement_height", "height", displacement=graph.displacement)
         graph.normal = graph.add("bump", "normal", attribute=UNDISPLACED, height=height)
-    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=(0.5, 0.5, 0.5))
-    return Material(name, graph)
+    return material
 
 
-def plain() -> Material:
-    graph = NodeGraph()
-    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=(0.5, 0.5, 0.5))
-    return Material("Plain", graph)
+def by_height(material: Material, height: object) -> Material:
+    """The material, displaced along the normal by a value of its graph."""
+    material.graph.displacement = material.graph.add("displacement", "displacement", height=height, midlevel=0.0)
+    return material
+
+
+def red(height: float = HEIGHT) -> Material:
+    made = waves(height=height)
+    made.graph.nodes[made.graph.surface.node].inputs["color"] = (0.9, 0.1, 0.1)
+    return made
+
+
+def bent(mesh: Mesh, *offset: float) -> Deformation:
+    """From the mesh's shape to that a way off."""
+    shapes = np.stack([mesh.positions, mesh.positions + np.float32(offset or 0.0)])
+    return Deformation(0, np.array([0.0, 1.0]), shapes, np.stack([mesh.corner_normals] * 2))
 
 
 def raised(offset: object) -> Material:
@@ -75,15 +80,10 @@ def raised(offset: object) -> Material:
 
 
 def scene_of(*materials: Material, meshes: list[Mesh] | None = None, instances: list[Instance] | None = None) -> Scene:
-    above = placed(0.0, 0.0, 3.0)
-    return Scene(
-        Camera(above, (-0.3, 0.3, -0.3, 0.3), 32, 32),
-        meshes or [grid(8)],
-        instances or [Instance(0, np.eye(4), list(range(len(materials))))],
-        list(materials),
-        world=World(np.ones(3)),
-        settings=RenderSettings(iterations=1, photons=64, filter_width=0.0, passes=("Depth", "Normal")),
-    )
+    instances = instances or [Instance(0, np.eye(4), list(range(len(materials))))]
+    camera = Camera(placed(0.0, 0.0, 3.0), (-0.3, 0.3, -0.3, 0.3), 32, 32)
+    settings = RenderSettings(iterations=1, photons=64, filter_width=0.0, passes=("Depth", "Normal"))
+    return Scene(camera, meshes or [grid(8)], instances, list(materials), world=World(np.ones(3)), settings=settings)
 
 
 @pytest.fixture
@@ -138,9 +138,8 @@ def test_attributes_of_what_is_mirrored_are_those_of_its_corners(displaced):
     material, mesh = plain(), grid(8)
     mesh.attributes["x"] = MeshAttribute(AttributeDomain.POINT, mesh.positions[:, :1].copy())
     x = material.graph.add("attribute", "fac", attribute="x")
-    material.graph.displacement = material.graph.add("displacement", "displacement", height=x, midlevel=0.0)
     instance = Instance(0, np.diag([-1.0, 1.0, 1.0, 1.0]), [0])
-    (moved,) = displaced(scene_of(material, meshes=[mesh], instances=[instance])).meshes
+    (moved,) = displaced(scene_of(by_height(material, x), meshes=[mesh], instances=[instance])).meshes
     np.testing.assert_allclose(moved.positions[:, 2], mesh.positions[:, 0], atol=1e-6)
 
 
@@ -158,9 +157,8 @@ def test_the_first_triangle_of_a_vertex_moves_it(displaced):
 def test_seams_of_uv_maps_do_not_open(displaced):
     material = plain()
     u = material.graph.add("separate_xyz", "x", vector=material.graph.add("tex_coord", "uv"))
-    material.graph.displacement = material.graph.add("displacement", "displacement", height=u, midlevel=0.0)
     mesh = grid(8)
-    (moved,) = displaced(scene_of(material, meshes=[mesh])).meshes
+    (moved,) = displaced(scene_of(by_height(material, u), meshes=[mesh])).meshes
     x = mesh.positions[:, 0]
     np.testing.assert_allclose(moved.positions[:, 2], np.where(x <= 0.0, x, x + 1.0), atol=1e-6)
 
@@ -191,25 +189,24 @@ def test_sharp_edges_stay_sharp_and_shut(displaced):
 
 def test_what_bends_is_displaced_at_all_times(displaced):
     mesh = grid(8)
-    shapes = np.stack([mesh.positions, mesh.positions + np.float32([0.0, 0.0, 0.5])])
-    bent = Deformation(0, np.array([0.0, 1.0]), shapes, np.stack([mesh.corner_normals] * 2))
     scene = scene_of(waves(), meshes=[mesh])
-    scene.shutter = scene.neighbors = Shutter(np.ones(4), meshes=[bent])
+    scene.shutter = scene.neighbors = Shutter(np.ones(4), meshes=[bent(mesh, 0.0, 0.0, 0.5)])
     result = displaced(scene)
     for shutter in (result.shutter, result.neighbors):
         (moved,) = shutter.meshes
         np.testing.assert_array_equal(moved.positions[0], result.meshes[0].positions)
-        np.testing.assert_allclose(moved.positions[1] - moved.positions[0], shapes[1] - shapes[0], atol=1e-6)
+        np.testing.assert_allclose(
+            moved.positions[1] - moved.positions[0], [[0.0, 0.0, 0.5]] * len(mesh.positions), atol=1e-6
+        )
         np.testing.assert_allclose(moved.corner_normals[1], result.meshes[0].corner_normals, atol=1e-5)
 
 
 def test_objects_with_other_materials_keep_the_mesh_as_it_was(displaced):
     mesh = grid(8)
-    bent = Deformation(0, np.array([0.0, 1.0]), np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
     materials = [waves(), waves("High", 2.0 * HEIGHT), plain()]
     instances = [Instance(0, placed(index, 0.0, 0.0), [index]) for index in (0, 1, 2)]
     scene = scene_of(*materials, meshes=[mesh], instances=[*instances, Instance(0, placed(5.0, 0.0, 0.0), [0])])
-    scene.shutter = Shutter(np.ones(4), meshes=[bent])
+    scene.shutter = Shutter(np.ones(4), meshes=[bent(mesh)])
     result = displaced(scene)
     heights = [np.ptp(result.meshes[instance.mesh].positions[:, 2]) for instance in result.instances]
     np.testing.assert_allclose(heights, np.array([1.0, 2.0, 0.0, 1.0]) * heights[0], rtol=1e-5)
@@ -224,9 +221,7 @@ def test_what_did_not_change_is_the_same_object(displaced):
     scene = scene_of(waves())
     (first,) = displaced(scene).meshes
     assert displaced(scene, renewed=False).meshes[0] is first
-    red = waves()
-    red.graph.nodes[red.graph.surface.node].inputs["color"] = (0.9, 0.1, 0.1)
-    assert displaced(dataclasses.replace(scene, materials=[red])).meshes[0] is first
+    assert displaced(dataclasses.replace(scene, materials=[red()])).meshes[0] is first
     other = displaced(dataclasses.replace(scene, materials=[waves(height=0.2)])).meshes[0]
     assert np.ptp(other.positions[:, 2]) > 1.2 * np.ptp(first.positions[:, 2])
 
@@ -240,28 +235,17 @@ def test_caustics_of_displaced_water_are_those_of_a_mesh_with_its_waves(mapper, 
     scene.lights, scene.world = [Light("Sun", LightKind.SUN, np.eye(4), np.full(3, 2.0))], World(np.zeros(3))
     scene.settings = RenderSettings(iterations=2, photons=4096)
 
-    def rendered(scene):
-        mapper.build(scene)
-        mapper.iterate()
-        mapper.iterate()
-        return mapper.film.read_radiance()
-
     still = dataclasses.replace(water, graph=dataclasses.replace(water.graph, displacement=None))
     calm = dataclasses.replace(scene, materials=[still, scene.materials[1]])
     moved = dataclasses.replace(calm, meshes=displaced(scene).meshes)
-    caustic = rendered(scene)
-    np.testing.assert_array_equal(rendered(moved), caustic)
-    assert not np.array_equal(rendered(calm), caustic)
+    caustic = radiance_of(mapper, scene, 2)
+    np.testing.assert_array_equal(radiance_of(mapper, moved, 2), caustic)
+    assert not np.array_equal(radiance_of(mapper, calm, 2), caustic)
 
 
 def test_an_update_equals_a_build(mapper, other_mapper):
     scene = scene_of(waves(), plain(), meshes=[grid(16), grid(4)])
     scene.instances = [Instance(0, np.eye(4), [0]), Instance(1, placed(0.3, 0.0, 0.1), [1])]
-
-    def red(height):
-        made = waves(height=height)
-        made.graph.nodes[made.graph.surface.node].inputs["color"] = (0.9, 0.1, 0.1)
-        return made
 
     mapper.build(scene)
     for changed in (
@@ -318,9 +302,8 @@ def test_a_displacement_that_is_malformed_is_left_out_with_a_warning(displaced):
 def test_meshes_are_divided_before(displaced):
     """By pixels as the camera sees them, and their shapes and triangles with them."""
     mesh = dataclasses.replace(grid(4), dicing=Dicing(0.05, False, True))
-    bent = Deformation(0, np.array([0.0, 1.0]), np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
     scene = scene_of(waves(bump=True), meshes=[mesh])
-    scene.shutter = Shutter(np.ones(4), meshes=[bent])
+    scene.shutter = Shutter(np.ones(4), meshes=[bent(mesh)])
     result = displaced(scene)
     (moved,) = result.meshes
     assert moved.triangle_count == 16 * 16**2 * 2 and moved.dicing is None  # edges of 0.7 in 16 parts, not 15
@@ -365,12 +348,9 @@ def test_what_moves_leaves_nothing_behind(displaced):
     scene = scene_of(waves(), plain(), meshes=[mesh])
     left = []
     for place in range(3):
-        keys = np.stack([mesh.positions, mesh.positions + np.float32(place)])
-        bent = Deformation(0, np.array([0.0, 1.0]), keys, np.stack([mesh.corner_normals] * 2))
-        left += [weakref.ref(bent), weakref.ref(keys)]
-        matrix = placed(place, 0.0, 0.0)
-        left.append(weakref.ref(matrix))
+        moving, matrix = bent(mesh, place, place, place), placed(place, 0.0, 0.0)
+        left += [weakref.ref(moving), weakref.ref(moving.positions), weakref.ref(matrix)]
         instances = [Instance(0, matrix, [0]), Instance(0, np.eye(4), [1])]
-        displaced(dataclasses.replace(scene, instances=instances, shutter=Shutter(np.ones(4), meshes=[bent])), False)
-    del bent, keys, matrix, instances
+        displaced(dataclasses.replace(scene, instances=instances, shutter=Shutter(np.ones(4), meshes=[moving])), False)
+    del moving, matrix, instances
     assert [found() is None for found in left] == [True] * 6 + [False] * 3

@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated, radiance_of
 
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.common.records.closures import MicrofacetKind
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene, World
+from rppm_addon.scene import Light, LightKind, Material, NodeGraph, World
 
 Record(
     "HairTestParameters",
@@ -70,17 +71,20 @@ def test_chiang_in_a_white_furnace(context, library, roughness, sine, h):
     assert_sampled_by_its_pdf(drawn, expected)
 
 
+def reflectance(cosine, ior):
+    """Fresnel's, of unpolarized light that comes from outside."""
+    inside = np.sqrt(1.0 - (1.0 - cosine**2) / ior**2)
+    parallel = (ior * cosine - inside) / (ior * cosine + inside)
+    across = (cosine - ior * inside) / (cosine + ior * inside)
+    return 0.5 * (parallel**2 + across**2)
+
+
 def attenuations(sigma, sine, h, ior):
     """Chiang et al. 2016, section 3: of R, TT, TRT and all that follows."""
     cosine = np.sqrt(1.0 - sine**2)
     index = np.sqrt(ior**2 - sine**2) / cosine
-    length = 2.0 * np.sqrt(1.0 - (h / index) ** 2) / np.sqrt(1.0 - (sine / ior) ** 2)
-    passed = np.exp(-sigma * length)
-    cosine *= np.sqrt(1.0 - h**2)
-    inside = np.sqrt(1.0 - (1.0 - cosine**2) / ior**2)
-    parallel = (ior * cosine - inside) / (ior * cosine + inside)
-    across = (cosine - ior * inside) / (cosine + ior * inside)
-    f = 0.5 * (parallel**2 + across**2)
+    passed = np.exp(-sigma * 2.0 * np.sqrt(1.0 - (h / index) ** 2) / np.sqrt(1.0 - (sine / ior) ** 2))
+    f = reflectance(cosine * np.sqrt(1.0 - h**2), ior)
     tt = (1.0 - f) ** 2 * passed
     return f, tt, tt * passed * f, tt * (passed * f) ** 2 / (1.0 - passed * f)
 
@@ -98,11 +102,11 @@ def test_chiang_absorbs_as_in_closed_form(context, library, sine, h):
 
 def test_chiang_sends_light_around_the_fiber(context, library):
     """Met at the middle of a narrow fiber, R goes back and TT goes on; met beside it, R is mirrored by the normal."""
-    smooth = (0.05, 0.05, 1.0)
-    _, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, 0.0, (1e3, 1e3, 1e3), smooth)
-    assert drawn[:, 2].mean() < 0.01  # y^2
-    _, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, np.sqrt(0.5), (1e3, 1e3, 1e3), smooth)
-    assert drawn[:, 2].mean() > 0.97
+    middle, beside = (
+        run(context, library, MicrofacetKind.HAIR_CHIANG, 0.0, h, (1e3, 1e3, 1e3), (0.05, 0.05, 1.0))[2]
+        for h in (0.0, np.sqrt(0.5))
+    )
+    assert middle[:, 2].mean() < 0.01 and beside[:, 2].mean() > 0.97  # y^2
 
 
 def test_chiang_tilts_what_it_reflects(context, library):
@@ -139,36 +143,27 @@ def test_huang_reflects_as_a_cylinder_does(context, library):
     Fresnel's reflectance."""
     weights, _, drawn, _ = run(context, library, MicrofacetKind.HAIR_HUANG, 0.0, 0.0, (1e3, 1e3, 1e3), (1.0, 0.01, 1.0))
     h = (np.arange(4096) + 0.5) / 4096
-    cosine = np.sqrt(1.0 - h**2)
-    inside = np.sqrt(1.0 - h**2 / 1.55**2)
-    parallel = (1.55 * cosine - inside) / (1.55 * cosine + inside)
-    across = (cosine - 1.55 * inside) / (cosine + 1.55 * inside)
-    reflectance = 0.5 * (parallel**2 + across**2)
-    assert weights[:, 1].mean() == pytest.approx(reflectance.mean(), rel=0.02)
+    reflected = reflectance(np.sqrt(1.0 - h**2), 1.55)
+    assert weights[:, 1].mean() == pytest.approx(reflected.mean(), rel=0.02)
     sideways = np.sin(2.0 * np.arcsin(h)) ** 2
-    assert drawn[:, 2].mean() == pytest.approx((reflectance * sideways).mean(), rel=0.03)
+    assert drawn[:, 2].mean() == pytest.approx((reflected * sideways).mean(), rel=0.03)
 
 
 def test_fibers_store_no_photons_however_smooth_lobes_must_be_to_be_followed(mapper):
     """A hairy wall beside a floor is the same bit for bit."""
     graph = NodeGraph()
     graph.surface = graph.add("bsdf_hair", "bsdf", color=(0.9, 0.6, 0.3), roughnessu=0.3, roughnessv=0.5)
-    floor = scenes.rectangle("floor", (-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
     wall = scenes.rectangle("wall", (-1, 1, 0), (1, 1, 0), (1, 1, 1), (-1, 1, 1))
-    scene = Scene(
-        Camera(scenes.looking((0, -0.2, 2), (0, 0.4, 0)), (-0.3, 0.3, -0.3, 0.3), 8, 8),
-        [floor, wall],
-        [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [1])],
-        [scenes.diffuse(0.5, 0.5, 0.5), Material("hair", graph)],
-        [Light("light", LightKind.AREA, scenes.looking((0, -1.5, 1.2), (0, 1, 0.4)), np.full(3, 3.0), size=(2.0, 2.0))],
-    )
-    found = []
-    for roughness in (0.5, 0.0):
-        scene.settings = RenderSettings(photons=1024, specular_roughness=roughness)
-        mapper.build(scene)
-        for _ in range(2):
-            mapper.iterate()
-        found.append(mapper.film.read_radiance())
+    parts = (scenes.square("floor", 1.0), scenes.diffuse(0.5, 0.5, 0.5)), (wall, Material("hair", graph))
+    facing_wall = scenes.looking((0, -1.5, 1.2), (0, 1, 0.4))
+    light = Light("light", LightKind.AREA, facing_wall, np.full(3, 3.0), size=(2.0, 2.0))
+    camera = scenes.camera((0, -0.2, 2), (0, 0.4, 0), 0.3, 8)
+    found = [
+        radiance_of(
+            mapper, scenes.scene_of(camera, *parts, lights=[light], photons=1024, specular_roughness=roughness), 2
+        )
+        for roughness in (0.5, 0.0)
+    ]
     np.testing.assert_array_equal(*found)
 
 
@@ -181,19 +176,11 @@ def test_photons_leave_out_where_viewers_see_no_light(mapper, by_sun):
     graph.surface = graph.add("bsdf_hair_principled", "bsdf", options=options, color=(0.9, 0.9, 0.9))
     sheet = scenes.rectangle("sheet", (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))
     sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 0), (1, 1, -1)), np.ones(3))
-    mapper.build(
-        Scene(
-            Camera(scenes.looking((0, -1, 3), (0, 0, 0)), (-0.3, 0.3, -0.3, 0.3), 8, 8),
-            [sheet],
-            [Instance(0, np.eye(4), [0])],
-            [Material("hair", graph)],
-            [sun] if by_sun else [],
-            World(np.ones(3) * (not by_sun)),
-            settings=RenderSettings(photons=16384, photon_path_length=2),
-        )
-    )
-    mapper.iterate()
-    first, second = mapper.read_photons()
+    scene = scenes.scene_of(
+        scenes.camera((0, -1, 3), (0, 0, 0), 0.3, 8), (sheet, Material("hair", graph)), photons=16384,
+        lights=[sun] if by_sun else [], world=World(np.ones(3) * (not by_sun)), photon_path_length=2,
+    )  # fmt: skip
+    first, second = iterated(mapper, scene).read_photons()
     on = (first["flags"] & PhotonFlag.ACTIVE != 0) & (first["flags"] & PhotonFlag.ESCAPED == 0)
     on &= second["flags"] & PhotonFlag.ACTIVE != 0
     on &= first["position"][:, 1] < first["position"][:, 0]  # the triangle whose fibers run along x

@@ -11,18 +11,7 @@ from support.render_states import assert_goes_on
 
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.integrator.surfaces.node_rays import NODE_RAY
-from rppm_addon.scene import (
-    AovOutput,
-    Camera,
-    Instance,
-    Light,
-    LightKind,
-    Link,
-    Material,
-    NodeGraph,
-    RenderSettings,
-    Scene,
-)
+from rppm_addon.scene import AovOutput, Light, LightKind, Link, Material, NodeGraph, Scene
 
 SAMPLES, ITERATIONS, SIDE = 64, 4, 8
 Record("RaycastAnswerParameters", world_origin="vec3", ray_stride="uint", ray_level="uint", ray_levels="uint")
@@ -39,15 +28,12 @@ def glowing(kind: str, output: str, shown=None, **members) -> Material:
 
 def seen_from_above(surface: Material, around: list, height: float = 0.5, at: float = 0.0) -> Scene:
     """A small piece of a floor at (at, 0, 0), with what is around it."""
-    camera = Camera(scenes.looking((at, 0, height), (at, 0, 0)), (-1e-3, 1e-3, -1e-3, 1e-3), SIDE, SIDE)
-    meshes = [scenes.rectangle("floor", (-50, -50, 0), (50, -50, 0), (50, 50, 0), (-50, 50, 0)), *around]
-    settings = RenderSettings(
-        iterations=ITERATIONS, photons=64, passes=(), camera_path_length=1, photon_path_length=1,
-        use_final_gather=False, filter_width=0.0,
+    sun, gray = Light("sun", LightKind.SUN, np.eye(4), np.ones(3)), scenes.diffuse(0.5, 0.5, 0.5)
+    return scenes.scene_of(
+        scenes.camera((at, 0, height), (at, 0, 0), 1e-3, SIDE), (scenes.square("floor", 50.0), surface),
+        *((mesh, gray) for mesh in around), lights=[sun], iterations=ITERATIONS, photons=64, passes=(),
+        camera_path_length=1, photon_path_length=1, use_final_gather=False, filter_width=0.0,
     )  # fmt: skip
-    instances = [Instance(number, np.eye(4), [min(number, 1)]) for number in range(len(meshes))]
-    return Scene(camera, meshes, instances, [surface, scenes.diffuse(0.5, 0.5, 0.5)],
-                 [Light("sun", LightKind.SUN, np.eye(4), np.ones(3))], settings=settings)  # fmt: skip
 
 
 def wall(x: float, height: float = 50.0):
@@ -55,7 +41,7 @@ def wall(x: float, height: float = 50.0):
 
 
 def ceiling(z: float):
-    return scenes.rectangle("ceiling", (-50, -50, z), (50, -50, z), (50, 50, z), (-50, 50, z))
+    return scenes.square("ceiling", 50.0, z)
 
 
 def beyond(t: float) -> float:

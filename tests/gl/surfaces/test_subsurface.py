@@ -4,21 +4,11 @@
 import numpy as np
 import pytest
 import scenes
+from rendering import iterated, radiance_of
 
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
-from rppm_addon.scene import (
-    Camera,
-    DensityEstimation,
-    DirectLight,
-    Instance,
-    Light,
-    LightKind,
-    Material,
-    NodeGraph,
-    RenderSettings,
-    Scene,
-    World,
-)
+from rppm_addon.scene import Instance, Light, LightKind, Material, NodeGraph, Scene, World
+from rppm_addon.scene.settings import DensityEstimation, DirectLight
 
 
 def wax(color: tuple[float, float, float], radius: float, method: str = "RANDOM_WALK", **inputs: object) -> Material:
@@ -32,11 +22,14 @@ def wax(color: tuple[float, float, float], radius: float, method: str = "RANDOM_
 
 def ball(material: Material, **settings: object) -> Scene:
     """Return a scene of a ball of radius 1, before a camera that sees nothing else."""
-    camera = Camera(scenes.looking((0, -5, 0), (0, 0, 0)), (-0.1, 0.1, -0.1, 0.1), 24, 24)
     defaults = {"photons": 64, "filter_width": 0.0, "camera_path_length": 2}
-    instances = [Instance(0, np.eye(4), [0])]
-    settings = RenderSettings(**defaults | settings)
-    return Scene(camera, [scenes.sphere("ball")], instances, [material], [], settings=settings)
+    camera = scenes.camera((0, -5, 0), (0, 0, 0), 0.1, 24)
+    return scenes.scene_of(camera, (scenes.sphere("ball"), material), **defaults | settings)
+
+
+def sun(*position: float) -> Light:
+    """A sun that shines from a side of the ball."""
+    return Light("sun", LightKind.SUN, scenes.looking(position, (0, 0.001, 0)), np.ones(3))
 
 
 def crowded(material: Material) -> Material:
@@ -50,10 +43,7 @@ def crowded(material: Material) -> Material:
 
 def estimate(mapper, scene: Scene, iterations: int) -> tuple[np.ndarray, np.ndarray]:
     """Mean radiance of all pixels, and its standard error."""
-    mapper.build(scene)
-    for _ in range(iterations):
-        mapper.iterate()
-    pixels = mapper.film.read_radiance()[..., :3].reshape(-1, 3).astype(float)
+    pixels = radiance_of(mapper, scene, iterations)[..., :3].reshape(-1, 3).astype(float)
     return pixels.mean(axis=0), pixels.std(axis=0) / np.sqrt(len(pixels))
 
 
@@ -73,7 +63,7 @@ def test_light_comes_through_from_behind(mapper):
     material = wax((0.9, 0.9, 0.9), 0.3)
     material.graph.nodes[-1].inputs["radius"] = (1.0, 0.5, 0.1)
     scene = ball(material, camera_path_length=1)
-    scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0, 9, 0), (0, 0, 0)), np.full(3, 1.0))]
+    scene.lights = [sun(0, 9, 0)]
     mean, error = estimate(mapper, scene, 8)
     assert mean[0] > mean[1] + 4 * error[0] and mean[1] > 4 * error[1] and mean[0] > 0.01
     assert mean[2] < 0.1 * mean[1]
@@ -94,8 +84,7 @@ def test_passes_show_what_the_camera_sees_first(mapper):
     """The same as of a diffuse surface."""
     found = []
     for material in (wax((0.8, 0.5, 0.2), 0.3), scenes.diffuse(0.8, 0.5, 0.2)):
-        mapper.build(ball(material, passes=("Position", "Normal", "Depth", "Diffuse Color")))
-        mapper.iterate()
+        iterated(mapper, ball(material, passes=("Position", "Normal", "Depth", "Diffuse Color")))
         found.append(mapper.film.read_passes())
     for name, seen in found[1].items():
         np.testing.assert_allclose(found[0][name], seen, rtol=1e-6, err_msg=name)
@@ -109,7 +98,7 @@ def test_splats_meet_importons_where_paths_come_out(mapper):
         scene = ball(
             wax((0.8, 0.5, 0.2), 0.3), photons=4096, direct_light=DirectLight.PHOTONS, density_estimation=route
         )
-        scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0, -9, 0), (0, 0, 0)), np.full(3, 1.0))]
+        scene.lights = [sun(0, -9, 0)]
         found.append(estimate(mapper, scene, 1)[0])
     assert found[0].min() > 0.0
     np.testing.assert_allclose(found[1], found[0], rtol=1e-4)
@@ -122,9 +111,8 @@ def test_photons_leave_where_they_come_out(mapper):
     scene = ball(
         wax(color, 0.02), photons=32768, photon_path_length=2, direct_light=DirectLight.PHOTONS, camera_path_length=1
     )
-    scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0, 0, 9), (0, 0.001, 0)), np.full(3, 1.0))]
-    mapper.build(scene)
-    mapper.iterate()
+    scene.lights = [sun(0, 0, 9)]
+    iterated(mapper, scene)
     first, second = mapper.read_photons()
     lit = first["flags"] & (PhotonFlag.ACTIVE | PhotonFlag.STORED) == PhotonFlag.ACTIVE | PhotonFlag.STORED
     assert lit.sum() > 1000
@@ -144,9 +132,8 @@ def test_photons_go_below_crowded_surfaces(mapper):
         scene = ball(
             material, photons=8192, photon_path_length=2, direct_light=DirectLight.PHOTONS, camera_path_length=1
         )
-        scene.lights = [Light("sun", LightKind.SUN, scenes.looking((0, 0, 9), (0, 0.001, 0)), np.full(3, 1.0))]
-        mapper.build(scene)
-        mapper.iterate()
+        scene.lights = [sun(0, 0, 9)]
+        iterated(mapper, scene)
         first, second = mapper.read_photons()
         gone = second["flux"].max(axis=1) > 0.0
         flux, upward = second["flux"][gone, 0].astype(float), -second["direction"][gone, 2].astype(float)

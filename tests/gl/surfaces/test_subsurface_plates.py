@@ -3,9 +3,11 @@
 
 import numpy as np
 import scenes
+from rendering import iterated
+from test_subsurface import sun, wax
 
 from rppm_addon.integrator.common.records.photon_paths import PhotonFlag
-from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene
+from rppm_addon.scene import DirectLight, Scene
 
 THICKNESS, COLOR, IOR, ROUGHNESS = 0.02, 0.9, 1.4, 0.5
 # Of either material, meters.
@@ -85,29 +87,22 @@ def walked(method: str) -> tuple[np.ndarray, np.ndarray]:
 
 def plates() -> Scene:
     """One of each material, side by side below a sun."""
-    corners = np.array([(x, y, z) for z in (-0.5, 0.5) for y in (-1, 1) for x in (-1, 1)]) * (1.0, 1.0, THICKNESS)
-    faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    materials = []
-    for method, radius in RADII.items():
-        graph = NodeGraph()
-        graph.surface = graph.add(
-            "subsurface_scattering", "bssrdf", options={"falloff": method}, color=(COLOR,) * 3, scale=radius,
-            radius=(1.0, 1.0, 1.0), roughness=ROUGHNESS, ior=IOR,
-        )  # fmt: skip
-        materials.append(Material(method, graph))
-    instances = [Instance(0, scenes.placed(x, 0.0, 0.0), [k]) for k, x in enumerate((-1.1, 1.1))]
-    camera = Camera(scenes.looking((0, -5, 0), (0, 0, 0)), (-0.1, 0.1, -0.1, 0.1), 8, 8)
-    sun = Light("sun", LightKind.SUN, scenes.looking((0, 0, 9), (0, 0.001, 0)), np.full(3, 1.0))
-    settings = RenderSettings(
-        photons=PHOTONS, photon_path_length=2, camera_path_length=1, direct_light=DirectLight.PHOTONS
-    )
-    return Scene(camera, [scenes.polygons("plate", corners, faces)], instances, materials, [sun], settings=settings)
+    plate = scenes.box("plate")
+    plate.positions *= np.float32([1.0, 1.0, THICKNESS / 2])
+    looks = {"roughness": ROUGHNESS, "ior": IOR}
+    materials = [wax((COLOR, COLOR, COLOR), radius, method, **looks) for method, radius in RADII.items()]
+    scene = scenes.scene_of(
+        scenes.camera((0, -5, 0), (0, 0, 0), 0.1, 8), *((plate, each) for each in materials), lights=[sun(0, 0, 9)],
+        photons=PHOTONS, photon_path_length=2, camera_path_length=1, direct_light=DirectLight.PHOTONS,
+    )  # fmt: skip
+    for instance, x in zip(scene.instances, (-1.1, 1.1), strict=True):
+        instance.matrix = scenes.placed(x, 0.0, 0.0)
+    return scene
 
 
 def test_photons_leave_plates_as_viewers_see_them(mapper):
     """Viewers who look straight at a plate see more of what comes through than others do: their paths go in steeper."""
-    mapper.build(plates())
-    mapper.iterate()
+    iterated(mapper, plates())
     first, second = mapper.read_photons()
     lit = first["flags"] & (PhotonFlag.ACTIVE | PhotonFlag.STORED) == PhotonFlag.ACTIVE | PhotonFlag.STORED
     # Not those at the rims, which may come out there.

@@ -9,8 +9,8 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.viewport.first_look import FirstLook
-from rppm_addon.scene import RenderSettings, Scene, World
-from rppm_addon.scene.meshes import Instance, RayVisibility
+from rppm_addon.scene import Scene, World
+from rppm_addon.scene.meshes import RayVisibility
 from rppm_addon.session.placeholders import first_looks
 
 SIZE = 96
@@ -27,15 +27,12 @@ def draw(mapper, context, library):
 def balls(**changes: object) -> Scene:
     """A red ball to the left, in front of a green one in the middle; nothing is there to the right."""
     camera = dataclasses.replace(scenes.room(SIZE).camera, height=SIZE // 2, window=(-0.4, 0.4, -0.2, 0.2))
-    settings = RenderSettings(
-        iterations=32, photons=64, film_transparent=True, camera_path_length=2, photon_path_length=2
-    )
-    materials = [scenes.diffuse(*RED), scenes.diffuse(*GREEN)]
-    instances = [
-        Instance(0, scenes.placed(-0.6, -1.0, 0.0, 0.4), [0]), Instance(0, scenes.placed(0.0, 0.5, 0.1, 0.6), [1])
-    ]  # fmt: skip
-    world = World(np.ones(3))
-    scene = Scene(camera, [scenes.sphere("ball")], instances, materials, world=world, settings=settings)
+    settings = {"iterations": 32, "photons": 64, "camera_path_length": 2, "photon_path_length": 2}
+    parts = [(scenes.sphere("ball"), scenes.diffuse(*color)) for color in (RED, GREEN)]
+    scene = scenes.scene_of(camera, *parts, world=World(np.ones(3)), film_transparent=True, **settings)
+    places = scenes.placed(-0.6, -1.0, 0.0, 0.4), scenes.placed(0.0, 0.5, 0.1, 0.6)
+    for instance, matrix in zip(scene.instances, places, strict=True):
+        instance.matrix = matrix
     return dataclasses.replace(scene, **changes)
 
 
@@ -117,9 +114,8 @@ def test_what_the_camera_does_not_see(draw):
     for instance in (unseen, catcher):
         shown = dataclasses.replace(scene, instances=[instance, scene.instances[1]])
         np.testing.assert_array_equal(draw(shown), alone)
-    hole = dataclasses.replace(
-        scene, instances=[dataclasses.replace(scene.instances[0], holdout=True), *scene.instances[1:]]
-    )
+    held = dataclasses.replace(scene.instances[0], holdout=True)
+    hole = dataclasses.replace(scene, instances=[held, *scene.instances[1:]])
     with_hole, both = draw(hole), draw(scene)
     red = both[..., 0] > 2.0 * both[..., 1]
     assert not with_hole[red].any()
