@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_mesh, export, new_image
+from material_rendering import picture, stage, staged
 from node_trees import add_node, constant, link, mixed, new_material, node_group, surface, to_surface
-from rendering import picture, stage, staged
 
 from rppm_addon.blender.export import export_scene
 

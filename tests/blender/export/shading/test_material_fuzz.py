@@ -10,8 +10,8 @@ import bpy
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from material_rendering import picture, stage
 from node_trees import new_material, shader_nodes
-from rendering import picture, stage
 
 EXAMPLES = int(os.environ.get("RPPM_FUZZ_EXAMPLES", "0"))
 
