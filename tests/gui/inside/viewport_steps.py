@@ -293,12 +293,12 @@ _slices: list[list[int] | None] = []
 def _module(name: str) -> types.ModuleType:
     """A module of the extension's export."""
     engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    return importlib.import_module(f"{engine.__module__.rpartition('.')[0]}.export.{name}")
+    return importlib.import_module(f"{engine.__module__.rsplit('.', 2)[0]}.export.{name}")
 
 
 def count_slices() -> None:
     """From now on note each slice of a viewport's export."""
-    module = _module("sync")
+    module = _module("updates.sync")
     advance = module.SceneSync.advance
     _slices.clear()
 
@@ -315,7 +315,7 @@ _exported: list[str] = []
 
 def count_meshes() -> None:
     """From now on note whose mesh is exported."""
-    module = _module("objects.mesh_table")
+    module = _module("instances.mesh_table")
     export_mesh = module.export_mesh
 
     def counted(mesh, name, *arguments):
