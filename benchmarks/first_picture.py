@@ -80,7 +80,7 @@ def render(context: Context, library: ProgramLibrary, scene: Scene) -> Found:
         elif kind == "progress" and content["progress"]["iteration"] == 1:
             rendering.request_picture()
 
-    rendering = Rendering(context, library, Denoiser([]), take, KnownPrograms(), looks_first=True)
+    rendering = Rendering(context, library, Denoiser([]), take, KnownPrograms(), has_first_look=True)
     found = Found()
     rendering.show(scene, 1, False)
     rendering.request_picture()

@@ -131,7 +131,7 @@ def test_a_set_that_is_not_needed_has_empty_buffers_and_no_program(context, libr
     assert "Marks" in off.blocks  # for programs that others have
     assert not off.optional.is_on and on.optional.is_on
     assert not on.optional.marks.read("u4", 3).any()
-    with pytest.raises(AttributeError, match="Optional is off"):
+    with pytest.raises(AttributeError, match="it is off"):
         _ = off.optional.program
     assert library.made <= made + 1
     WithOptional.refuse_large(context, Sizes(1, 1))
