@@ -55,7 +55,7 @@ class _Preparing:
         self._round = _materials_of_round_shapes()
         self._materials: list[Material] = []
 
-    def go_on(self) -> bool:
+    def advance(self) -> bool:
         """Do a little; returns whether there is more to be done."""
         end = time.monotonic() + _SLICE_SECONDS
         while self._names:
@@ -107,7 +107,7 @@ def _go_on() -> float | None:
     try:
         if _is_wanted():
             _preparing = _preparing or _Preparing()
-            if _preparing.go_on():
+            if _preparing.advance():
                 return _SLICE_SECONDS
     except Exception:  # whoever renders says so
         logger.info("nothing is prepared", exc_info=True)
