@@ -269,7 +269,7 @@ def _planes(array: np.ndarray) -> list[np.ndarray]:
 
 @contextlib.contextmanager
 def renamed_when_whole(path: str | Path) -> Iterator[str]:
-    """As scene/common/whole_files.py has it, for pictures. Raises PictureError."""
+    """Write a picture's file whole or not at all (scene/common/whole_files.py). Raises PictureError."""
     try:
         with whole_files.renamed_when_whole(path) as temporary:
             yield temporary

@@ -49,3 +49,16 @@ def registered():
     rppm_addon.register()
     yield
     rppm_addon.unregister()
+
+
+@pytest.fixture(scope="module")
+def device():
+    """A context and its library of programs, which no renderer has."""
+    from rppm_addon.gl.context.context import Context
+    from rppm_addon.gl.programs.programs import ProgramLibrary
+
+    context = Context.create()
+    library = ProgramLibrary(context)
+    yield context, library
+    library.release()
+    context.release()

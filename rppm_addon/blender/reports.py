@@ -94,9 +94,9 @@ class SceneReports:
     viewport: RenderReport | None = None
     latest: RenderReport | None = None
     error: str = ""
-    """Why the last final render has no picture; empty if it has one."""
+    """Reason why the last final render has no picture; empty if it has one."""
     viewport_error: str = ""
-    """Why viewports cannot show the scene as it is now; empty if they can."""
+    """Reason why viewports cannot show the scene as it is now; empty if they can."""
 
 
 _EMPTY = SceneReports()

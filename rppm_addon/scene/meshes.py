@@ -165,6 +165,6 @@ class Instance:
     linking: LightLinking | None = None
     """None: all lights shine on it, and it stops them."""
     terminator_geometry_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
-    """Up to which cosine shadow rays begin on the surface that the normals describe, not on its triangles."""
+    """Cosine up to which shadow rays begin on the surface that the normals describe, not on its triangles."""
     terminator_shading_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
     """How much earlier than at the horizon the light of lights fades out; 1 is at 45 degrees."""

@@ -20,7 +20,7 @@ NOTHING_HIT = 1e10
 
 
 class Accumulation(enum.Enum):
-    """How the values of a pixel in all iterations make its value in the pass."""
+    """Way in which the values of a pixel in all iterations make its value in the pass."""
 
     MEAN = 0
     """Mean over all iterations of the first surface's value, with ``nothing`` where there is no surface."""

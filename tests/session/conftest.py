@@ -12,8 +12,6 @@ from pathlib import Path
 import pytest
 from support.floor import floor_scene
 
-from rppm_addon.gl.context.context import Context
-from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.session.client.client import RendererProcess, Timeouts
 from rppm_addon.session.render.renderer import Renderer
 from rppm_addon.session.transport.sessions import SessionKind
@@ -99,16 +97,6 @@ def run_to_the_end(work):
     while work.busy:
         work.run_slice()
         assert time.monotonic() < deadline, "it did not end in time"
-
-
-@pytest.fixture(scope="module")
-def device():
-    """A context, and a library of programs."""
-    context = Context.create()
-    library = ProgramLibrary(context)
-    yield context, library
-    library.release()
-    context.release()
 
 
 @pytest.fixture

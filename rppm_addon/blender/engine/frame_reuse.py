@@ -11,6 +11,7 @@ from bpy.app.handlers import persistent
 
 from ...scene import Scene
 from ...scene.storage.sharing import share
+from ..app_handlers import add_handlers, remove_handlers
 from ..render_client import renderer_process, renderer_thread
 
 _last: Scene | None = None
@@ -63,12 +64,10 @@ _HANDLERS = (
 
 def register() -> None:
     """Have what is kept be given back in time."""
-    for handlers, handler in _HANDLERS:
-        handlers.append(handler)
+    add_handlers(_HANDLERS)
 
 
 def unregister() -> None:
     """Give it all back."""
-    for handlers, handler in _HANDLERS:
-        handlers.remove(handler)
+    remove_handlers(_HANDLERS)
     forget()

@@ -6,6 +6,7 @@ import threading
 import bpy
 from bpy.app.handlers import persistent
 
+from ..app_handlers import add_handlers, remove_handlers
 from . import kept_exports, studio_lights
 from .viewport import Viewport
 
@@ -91,14 +92,12 @@ _HANDLERS = (
 
 def register() -> None:
     """Have viewports close with their file."""
-    for handlers, handler in _HANDLERS:
-        handlers.append(handler)
+    add_handlers(_HANDLERS)
 
 
 def unregister() -> None:
     """Close all viewports."""
-    for handlers, handler in _HANDLERS:
-        handlers.remove(handler)
+    remove_handlers(_HANDLERS)
     close_all()
     kept_exports.forget()
     studio_lights.forget()

@@ -48,7 +48,7 @@ class Viewport:
         """State of the renderer process at the last drawing."""
         self._export_drawn_at = 0.0
         self._error = ""
-        """Why the scene cannot be exported; empty if it can."""
+        """Reason why the scene cannot be exported; empty if it can."""
 
     def update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
         """Export what the depsgraph has changed."""
@@ -142,7 +142,7 @@ class Viewport:
 
     @property
     def is_open(self) -> bool:
-        """Whether Blender has not freed the engine."""
+        """True until Blender frees the engine that draws the viewport."""
         try:
             _ = self.engine.is_preview  # any property of a freed one raises; its __del__ is not called while it is held
         except ReferenceError:

@@ -67,5 +67,5 @@ class ViewportExport:
 
 
 def is_playing(context: bpy.types.Context) -> bool:
-    """Whether an animation plays in the window."""
+    """Return whether Blender plays an animation in the window of a context."""
     return context.screen is not None and context.screen.is_animation_playing

@@ -52,7 +52,7 @@ class ExportContext:
 
     @property
     def untracked_reads(self) -> int:
-        """How often something was read that changes without the depsgraph reporting it."""
+        """Number of values read so far that can change without a report of the depsgraph."""
         return self.owner_reads + self.images.reads_by_frame
 
     def read_from(self, depsgraph: bpy.types.Depsgraph) -> None:

@@ -15,7 +15,7 @@ INTERRUPTED = 130
 _SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGBREAK") if hasattr(signal, name))
 """SIGBREAK is Windows' only one that a program can be sent by others, as render managers do."""
 GRACE_SECONDS = 1.0
-"""For a program that has nothing to keep, or was interrupted twice, to end by itself."""
+"""Seconds that a program has to end by itself, when it has nothing to keep or was interrupted twice."""
 
 
 class Interruption:

@@ -8,7 +8,7 @@ from ...scene.errors import DeviceLostError
 from .driver_errors import CONTEXT_LOST, DriverErrors
 
 _CAUSES = {0x8253: "because of RPPM's work", 0x8254: "because of another program's work"}
-"""By the value of glGetGraphicsResetStatus."""
+"""Causes of a reset, by the value of glGetGraphicsResetStatus."""
 _ROBUSTNESS = frozenset(("GL_KHR_robustness", "GL_ARB_robustness"))
 _ROBUST_VERSION = 450
 

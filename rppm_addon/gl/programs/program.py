@@ -174,7 +174,7 @@ class ComputeProgram(Program):
         self.context.barrier()
 
     def _run_groups(self, first: int, count: int) -> None:
-        """So many groups from a first one on, without those that would only fill a row."""
+        """Run a number of groups from a first one on, without those that would only fill a row."""
         while count > 0:
             columns = min(count, GROUPS_PER_ROW)
             self._set_uniform(self._program.glo, 0, first * self.local_size)

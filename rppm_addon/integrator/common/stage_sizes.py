@@ -28,7 +28,7 @@ class StageSizes:
     has_catchers: bool = False
     """Whether objects catch shadows."""
     first_camera_hits: FirstCameraHits | None = FirstCameraHits.AUTOMATIC
-    """How the camera's first hits are computed; None where they do not lie on a raster."""
+    """Route to the camera's first hits; None where these do not lie on a raster."""
     has_texels: bool = False
     """Whether camera paths begin at texels of a mesh (baking)."""
     measures_noise: bool = False

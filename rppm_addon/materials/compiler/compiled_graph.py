@@ -37,7 +37,7 @@ class NodeRayCounts:
     places: int = 0
     """Number of places for what rays find, for each hit."""
     levels: int = 0
-    """How many times rays are traced: those of a node may depend on what those of another found."""
+    """Number of times that rays are traced: rays of a node may depend on the hits of another node's rays."""
     samples: int = 0
     """Rays of a place, at most."""
     casts: bool = False

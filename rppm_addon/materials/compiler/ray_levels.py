@@ -16,7 +16,7 @@ class RayLevels:
     def __init__(self, graph: NodeGraph) -> None:
         self._graph = graph
         self._depths: list[int] = []
-        """By node, number of nodes that trace rays on the longest way to it, itself among them."""
+        """Number of nodes that trace rays on the longest way to a node, itself included, by node."""
         for index, node in enumerate(graph.nodes):
             links = [link.node for link in node.inputs.values() if isinstance(link, Link)]
             below = max((self._depths[link] for link in links if 0 <= link < index), default=0)

@@ -44,17 +44,17 @@ class SceneGraphs:
         """materials: those of the scene, and the default material."""
         self._scene = scene
         self.surfaces: list[CompiledGraph] = []
-        """By material."""
+        """Compiled graphs of the surfaces, by index of the material."""
         self.emits: list[Emits] = []
-        """By material."""
+        """Emission of the surfaces, by index of the material."""
         self.texts: dict[str, TextUse] = {}
         """Distinct GLSL texts of surfaces."""
         for material in materials:
             self._compile_surface(material)
         self.displacements = dict(self._compile_displacements())
-        """By index of the material, for those that displace."""
+        """Graphs of the materials that displace, by index of the material."""
         self.interiors = [Interior.of(material.interior) for material in materials]
-        """By material."""
+        """Media inside the surfaces, by index of the material."""
         self.unattached = list(self._compile_unattached(materials))
 
     def _compile_surface(self, material: Material) -> None:

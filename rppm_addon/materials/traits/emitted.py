@@ -21,7 +21,7 @@ _EMITTING = {
 
 
 class Emits(enum.Enum):
-    """How a graph emits, as far as its structure and constants show."""
+    """Emission of a graph, as far as its structure and constants show."""
 
     NOTHING = "nothing"
     EVENLY = "evenly"

@@ -14,7 +14,7 @@ is hit; entries read."""
 
 
 class DensityEstimation(enum.Enum):
-    """How photons and the points that take them find each other: the same picture, at different speed."""
+    """Route by which photons and importons meet: the same picture, at different speed."""
 
     AUTOMATIC = "AUTOMATIC"
     """Whichever is faster, found by trying both."""
@@ -25,7 +25,7 @@ class DensityEstimation(enum.Enum):
 
 
 class FirstCameraHits(enum.Enum):
-    """How the first hits of cameras without depth of field are found: nearly the same ones, at different speed."""
+    """Route to the first hits of cameras without depth of field: nearly the same hits, at different speed."""
 
     AUTOMATIC = "AUTOMATIC"
     """Traced where the processor stands in for a GPU, otherwise rasterized."""
@@ -36,7 +36,7 @@ class FirstCameraHits(enum.Enum):
 
 
 class FirstPhotonHits(enum.Enum):
-    """How the first hits of photons are found: the same ones, at different speed."""
+    """Route to the first hits of photons: the same hits, at different speed."""
 
     AUTOMATIC = "AUTOMATIC"
     """Traced at first, then whichever is faster, found by trying both."""

@@ -16,7 +16,7 @@ them."""
 
 
 class DirectLight(enum.Enum):
-    """How light that comes straight from a source is estimated; never both."""
+    """Estimator of the light that comes straight from a source; never both."""
 
     RAYS = "RAYS"
     PHOTONS = "PHOTONS"

@@ -45,7 +45,7 @@ class SettingInfo:
     property_offset: int = 0
     """Number added to the field's value for users: -1 where a path of 8 segments has 7 bounces."""
     where: str = ""
-    """Where Blender has the setting, or "nowhere", when it is no property of scene.rppm."""
+    """Place of the setting in Blender, or "nowhere", if it is no property of scene.rppm."""
 
     def property_of(self, name: str) -> str:
         """The name that users know the field ``name`` by."""

@@ -35,7 +35,7 @@ class Pause:
 
 @dataclass
 class Continuation:
-    """Where a render begins in the sequence of iterations, and who receives its state."""
+    """Place in the sequence of iterations where a render begins, and the receivers of its state."""
 
     sample_offset: int = 0
     """Number of iterations before the first one in the film."""
@@ -62,7 +62,7 @@ class DeviceLossRecovery:
         self._losses = 0
         """Number of times that the device was lost."""
         self.continuation = dataclasses.replace(continuation or Continuation(), safeguard=self._safeguard)
-        """Where the render begins, or begins again."""
+        """State from which the render begins, or begins again."""
         self._start = time.perf_counter()
 
     def _safeguard(self, pause: Pause, seconds: float) -> None:

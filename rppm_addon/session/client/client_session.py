@@ -26,7 +26,7 @@ class SessionOwner(Protocol):
     sessions: dict[int, "Session"]
     """Open sessions by number."""
     error: str
-    """Why the previous process has ended; empty if there was none."""
+    """Reason why the previous process has ended; empty if there was none."""
 
     def post(self, kind: str, **content: object) -> None:
         """Queue a message to the process, if there is one."""

@@ -46,7 +46,7 @@ class Connection:
         self.ended = False
         """Whether nothing more comes from the process."""
         self.reason = ""
-        """Why the process must be ended; empty if it need not."""
+        """Reason why the process must be ended; empty if it need not."""
         self.usable = True
         """Whether another process may succeed."""
         self.pinged_at: float | None = None

@@ -13,24 +13,12 @@ from recorder import record
 
 from rppm_addon.blender.engine import render_engine as engine_module
 from rppm_addon.blender.export import SceneSync, export_scene
-from rppm_addon.gl.context.context import Context
-from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 from rppm_addon.session.render.frame_reading import read_frame
 from rppm_addon.session.render.results import Frame
 
 ITERATIONS = 3
-
-
-@pytest.fixture(scope="module")
-def device():
-    """A context of its own with its programs: no renderer that Blender's renders use knows of it."""
-    context = Context.create()
-    library = ProgramLibrary(context)
-    yield context, library
-    library.release()
-    context.release()
 
 
 @pytest.fixture

@@ -96,8 +96,8 @@ class Selection:
 
     culling: Culling
     shown: Callable[[bpy.types.Object], bool] | None = None
-    """Whether an original object is shown; all are if None."""
+    """Function that returns whether the viewport shows an original object; None if all objects are shown."""
 
     def shows(self, original: bpy.types.Object) -> bool:
-        """Whether an original object is shown."""
+        """Return whether the viewport or the render shows an original object, culling aside."""
         return self.shown is None or self.shown(original)

@@ -8,6 +8,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ....scene import Image
+from ...app_handlers import add_handlers, remove_handlers
 
 MOST_BYTES = 1 << 30
 """Most bytes of pixels that are kept; the images that were used longest ago are dropped first."""
@@ -80,8 +81,7 @@ def register() -> None:
     """Keep pixels from now on where there is a window, whose viewports and renders read the same images."""
     global _is_keeping
     _is_keeping = not bpy.app.background
-    for handlers, handler in _HANDLERS:
-        handlers.append(handler)
+    add_handlers(_HANDLERS)
 
 
 def unregister() -> None:
@@ -89,5 +89,4 @@ def unregister() -> None:
     global _is_keeping
     _is_keeping = False
     _forget()
-    for handlers, handler in _HANDLERS:
-        handlers.remove(handler)
+    remove_handlers(_HANDLERS)

@@ -289,7 +289,7 @@ def _terminator_offsets(source: bpy.types.Object) -> tuple[float, float]:
 
 @functools.lru_cache(1 << 16)
 def _random(name: str) -> float:
-    """From 0 to 1, for an object that is no instance: Cycles' hash of its name."""
+    """Random number in [0, 1] of an object that is no instance: Cycles' hash of its name."""
     number = 0
     for byte in name.encode():
         number = (37 * number + byte) & 0xFFFFFFFF

@@ -47,9 +47,9 @@ class Placed:
     instances: list[Instance] = field(default_factory=list)
     lights: list[Light] = field(default_factory=list)
     single_instances: dict[int, int] = field(default_factory=dict)
-    """By session_uid, the index of the only instance of each mesh object that multiplies nothing."""
+    """Index of the only instance of each mesh object that multiplies nothing, by session_uid."""
     single_lights: dict[int, int] = field(default_factory=dict)
-    """By session_uid, the index of the only light of each light object."""
+    """Index of the only light of each light object, by session_uid."""
     identities: dict[int, Identity] = field(default_factory=dict)
     """Identities of instances and lights, by their id(), if asked for."""
 

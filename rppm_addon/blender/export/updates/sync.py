@@ -55,7 +55,7 @@ class SceneSync:
         self._is_unfinished = False
         """Whether an export is under way."""
         self._delays = 0
-        """How often something has changed meanwhile."""
+        """Number of times that something changed while the export was under way."""
         self._most_images = 0
         self._frame: float | None = None
 

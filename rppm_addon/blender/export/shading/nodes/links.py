@@ -106,15 +106,3 @@ def _group_output(group: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.ty
         if node.type == "GROUP_OUTPUT" and node.is_active_output:
             return next((socket for socket in node.inputs if socket.identifier == output.identifier), None)
     return None
-
-
-def named_input(node: bpy.types.Node, *names: str) -> bpy.types.NodeSocket | None:
-    """The first input of the node that has one of the names and is in use.
-
-    Names of sockets changed between Blender versions; indices change more often.
-    """
-    for name in names:
-        for socket in node.inputs:
-            if socket.name == name and socket.enabled:
-                return socket
-    return None
