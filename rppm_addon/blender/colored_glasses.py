@@ -155,12 +155,12 @@ def _collect(node: bpy.types.Node, weight: float, glasses: list, parts: list) ->
             return False
         factor = min(max(factor, 0.0), 1.0)
         weights = [weight * (1.0 - factor), weight * factor]
-    for socket, share in zip(_shader_inputs(node), weights, strict=True):
+    for socket, input_weight in zip(_shader_inputs(node), weights, strict=True):
         source, reroutes = _source(socket)
-        if source is None or share <= 0.0:
+        if source is None or input_weight <= 0.0:
             return False
         parts.extend(reroutes)
-        if not _collect(source, share, glasses, parts):
+        if not _collect(source, input_weight, glasses, parts):
             return False
     return True
 

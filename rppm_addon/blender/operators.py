@@ -108,11 +108,11 @@ class RPPM_OT_convert_to_dispersion(bpy.types.Operator):
             return {"CANCELLED"}
         ior, abbe_number = found.fitted
         colored_glasses.convert(material, found)
-        told = f'"{material.name}": one glass, IOR {ior:.3f}, Abbe Number {material.rppm.abbe_number:.1f}'
+        text = f'"{material.name}": one glass, IOR {ior:.3f}, Abbe Number {material.rppm.abbe_number:.1f}'
         if abbe_number < 0.0:
-            self.report({"WARNING"}, f"{told}; red had the largest index, which no glass has: blue has it now")
+            self.report({"WARNING"}, f"{text}; red had the largest index, which no glass has: blue has it now")
         else:
-            self.report({"INFO"}, told)
+            self.report({"INFO"}, text)
         return {"FINISHED"}
 
 

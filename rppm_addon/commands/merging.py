@@ -151,7 +151,7 @@ def merge_parts(paths: Sequence[Path], incomplete: bool) -> MergedStill:
     """The mean of all iterations of the parts, each part one file, denoised where their settings say so.
 
     incomplete: iterations may be missing. Raises CheckpointError when a file is no part, when parts are of different
-    stills or share iterations, and when iterations are missing.
+    stills or have iterations in common, and when iterations are missing.
     """
     found = sorted(
         ((read_summary(path), path) for path in paths), key=lambda part: (part[0].sample_offset, part[0].iteration)

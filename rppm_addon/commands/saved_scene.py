@@ -35,7 +35,7 @@ def camera_at_resolution(camera: Camera, width: int, height: int) -> Camera:
     """The camera with other pixels of the same shape.
 
     Where the frame's proportions change, its longer side keeps what it sees, as Blender's
-    automatic sensor fit does; a panorama fills any frame. A crop keeps its share of the frame.
+    automatic sensor fit does; a panorama fills any frame. A crop keeps its fraction of the frame.
     """
     left, right, bottom, top = camera.window
     window, panorama = camera.window, camera.panorama

@@ -155,14 +155,14 @@ PASSES = (
         PassKind.COLOR,
         Accumulation.SUM,
         nothing=1.0,
-        description="A pass to multiply a background with: the share of the light that arrives at catchers, else 1",
+        description="A pass to multiply a background with: the fraction of the light that arrives at catchers, else 1",
     ),
     RenderPass(
         "Debug Sample Count",
         "X",
         PassKind.VALUE,
         Accumulation.SUM,
-        description="A pass that shows the share of all samples that each pixel has got",
+        description="A pass that shows the fraction of all samples that each pixel has got",
     ),
     RenderPass(
         "Caustics",

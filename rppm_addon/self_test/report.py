@@ -61,7 +61,7 @@ class _Collected(logging.Handler):
 
 
 def run_self_test(on_progress: Callable[[float, str], None], device: str | None = None) -> SelfTest:
-    """Try the device; what fails is told in what is returned.
+    """Try the device; failures are in the report that is returned.
 
     ``on_progress`` gets how far the test is, 0 to 1, and what is tried next. device: as of Context.create.
     """

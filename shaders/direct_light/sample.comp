@@ -103,7 +103,7 @@ struct Arriving {
 
 const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE);
 
-vec3 share_of(vec3 part, vec3 whole) {
+vec3 fraction_of(vec3 part, vec3 whole) {
     return mix(part / max(whole, vec3(1e-35)), vec3(0.0), lessThanEqual(whole, vec3(0.0)));
 }
 
@@ -208,7 +208,7 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     float by_rays = environment ? left_to_rays(closure.position, sampled.direction, radius) : 1.0;
     vec3 scattered = evaluate_closure(index, closure, throughput, lobes, gathered, wo, sampled.direction, side > 0.0,
                                       light.flags, is_shared, light_pdf, by_rays, parts);
-    parts = Parts(share_of(parts.glossy, scattered), share_of(parts.transmission, scattered));
+    parts = Parts(fraction_of(parts.glossy, scattered), fraction_of(parts.transmission, scattered));
     uint beyond = path.flags;
     if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
     vec3 transmittance = segment_transmittance(beyond, sampled.distance);

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a smooth surface is made of flat triangles, shadow rays at a low angle meet its own faces. As in Cycles, they
-// begin on the curved surface that the normals tell of (geometry offset), and light fades out before the angle at
+// begin on the curved surface that the normals describe (geometry offset), and light fades out before the angle at
 // which they would end (shading offset; the workaround of the renderer appleseed).
 
 layout(local_size_x = 64) in;

@@ -24,7 +24,7 @@ struct FilmMetal {
 
 const FilmMetal NO_METAL = FilmMetal(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), false);
 
-// Of a metal that is told by its reflectance f0 and its tint at 82 degrees: indices after Gulbrandsen (Artist Friendly
+// Of a metal that is given by its reflectance f0 and its tint at 82 degrees: indices after Gulbrandsen (Artist Friendly
 // Metallic Fresnel, JCGT 2014), between those of least and most extinction by the reflectance at 82 degrees.
 FilmMetal metal_below_film(vec3 f0, vec3 tint, float film) {
     f0 = clamp(f0, 1e-4, 0.9999);

@@ -14,8 +14,8 @@ float sheet_alpha(float alpha, float ior) {
     return min(alpha * sqrt(max(widening, 0.0)), 1.0);
 }
 
-// Reflected and passed share of a sheet: Fresnel's at both sides, absorption along the way between them (color at
-// normal incidence), and all that goes to and fro within.
+// Fractions that a sheet reflects and transmits: Fresnel's at both sides, absorption along the way between them (color
+// at normal incidence), and all that goes to and fro within.
 void sheet_albedos(float cosine, vec3 color, vec3 tint, Film film, float ior, out vec3 reflected,
                    out vec3 transmitted) {
     float within2 = 1.0 - (1.0 - cosine * cosine) / (ior * ior);

@@ -42,7 +42,7 @@ bool may_cross(vec3 low, vec3 high) {
     return false;
 }
 
-// Whether a surface with a medium is so near that which side of it a point is on would be told by rounding.
+// Whether a surface with a medium is so near that which side of it a point is on would depend on rounding.
 bool is_at_surface(vec3 point) {
     float near = max(1e-4, 1e-5 * (abs(point.x) + abs(point.y) + abs(point.z)));
     if (!may_cross(point - near, point + near)) return false;

@@ -59,12 +59,12 @@ def _bake(
 ) -> np.ndarray:
     """(rows, columns, 4) float32 of the part of the texture that pixels.bounds tells."""
     scene = export_baked_scene(depsgraph, engine, baked, bake_pass, pixels)
-    told = list(scene.warnings)
-    report_warnings(engine, told)
+    warned = list(scene.warnings)
+    report_warnings(engine, warned)
     scene = reuse_previous_frame(scene)
     engine.update_stats("", "Preparing the graphics device")
     result = render_scene(engine, scene, _BakeJob(engine, scene, baked.name))
-    report_late_warnings(engine, result, scene, told)
+    report_late_warnings(engine, result, scene, warned)
     return bake_pass.picture(result.frame)
 
 

@@ -79,8 +79,8 @@ def _render(
 ) -> None:
     observer.on_picture(view.name)
     scene = _export(engine, depsgraph, observer)
-    told = list(scene.warnings)
-    report_warnings(engine, told)
+    warned = list(scene.warnings)
+    report_warnings(engine, warned)
     if not observer.on_scene(scene):
         return
     engine.update_stats("", "Preparing the graphics device")
@@ -97,7 +97,7 @@ def _render(
     job.end(cancel=False)
     if not engine.is_preview:
         _stamp(engine, scene, view.name, result.statistics)
-    report_late_warnings(engine, result, scene, told)
+    report_late_warnings(engine, result, scene, warned)
     if result.statistics.iterations and not engine.is_preview:
         record(depsgraph.scene.session_uid, final_report(result.statistics, scene))
     observer.on_finish(result, scene)
@@ -123,7 +123,7 @@ def _export(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, obse
     _check_size(engine, depsgraph.scene.render)
     looks_around = is_blurred(depsgraph, engine) or wants_neighbors(depsgraph, engine)
     if not depsgraph.scene.render.use_persistent_data or looks_around:
-        # Going to other frames, such a render takes in what Blender would tell the next one of.
+        # Going to other frames, such a render takes in changes that Blender would report to the next one.
         engine.exporter = None
         return reuse_previous_frame(export_scene(depsgraph, engine, observer.should_stop))
     # Blender keeps engine and depsgraph, and tells what has changed.
@@ -195,10 +195,15 @@ def report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> None
         engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
 
 
-def report_late_warnings(engine: bpy.types.RenderEngine, result: "RenderResult", scene: Scene, told: list[str]) -> None:
-    """Show the user those of a render that were not ``told`` before it; the statistics repeat the scene's."""
+def report_late_warnings(
+    engine: bpy.types.RenderEngine, result: "RenderResult", scene: Scene, warned: list[str]
+) -> None:
+    """Show the warnings of a render, but for those in ``warned``, which the user has seen.
+
+    The statistics repeat the warnings of the scene.
+    """
     found = dict.fromkeys((*result.statistics.warnings, *scene.warnings))
-    report_warnings(engine, [text for text in found if text not in told])
+    report_warnings(engine, [text for text in found if text not in warned])
 
 
 class _FinalJob(RenderJob):

@@ -48,7 +48,7 @@ class RppmSwitches(bpy.types.PropertyGroup):
 def draw_setting(column: bpy.types.UILayout, scene: bpy.types.Scene, name: str, text: str, unset: str = "") -> None:
     """A setting of SUGGESTIONS with its switch.
 
-    unset: what is told instead of the value 0, by default what it stands for.
+    unset: text shown instead of the value 0, by default what it stands for.
     """
     row = column.row(heading=text)
     row.prop(scene.rppm_switches, name, text="")

@@ -39,7 +39,7 @@ class Dispatcher:
         self._running: dict[distributed.Future, _Assignment] = {}
         self._losses: Counter[Task] = Counter()
         """How often all workers were lost that a task was meant for: the scheduler counts other losses."""
-        self._told = ""
+        self._reported = ""
 
     def run(self, tasks: Sequence[Task], watch: Watch) -> list[Task]:
         """Do tasks and return what failed of them; their errors are reported when they come.
@@ -128,9 +128,9 @@ class Dispatcher:
 
     def _warn(self, watch: Watch) -> None:
         refused = self._cluster.refused()
-        if refused and refused != self._told:
+        if refused and refused != self._reported:
             watch.warn(refused)
-            self._told = refused
+            self._reported = refused
 
     def _stop(self) -> None:
         """Let go of what is still at work, and wait until it has tidied up."""

@@ -119,7 +119,7 @@ def chunks(tasks: Sequence[Task], length: int) -> list[Task]:
 def still_tasks(
     file: Path, iterations: int, parts: int, outputs: Sequence[Path], folder: Path, options: Sequence[str]
 ) -> tuple[list[Task], Task]:
-    """A still in parts, each with its share of the iterations, and the task that merges them.
+    """A still in parts, each with its part of the iterations, and the task that merges them.
 
     Args:
         file: the scene.

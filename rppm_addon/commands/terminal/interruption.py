@@ -35,9 +35,9 @@ class Interruption:
         self._left = threading.Event()
 
     def __enter__(self) -> "Interruption":
-        self._heard, self._telling = socket.socketpair()
-        self._telling.setblocking(False)
-        self._previous_file = signal.set_wakeup_fd(self._telling.fileno(), warn_on_full_buffer=False)
+        self._heard, self._signaling = socket.socketpair()
+        self._signaling.setblocking(False)
+        self._previous_file = signal.set_wakeup_fd(self._signaling.fileno(), warn_on_full_buffer=False)
         threading.Thread(target=self._listen, name="RPPM signals", daemon=True).start()
         for number in _SIGNALS:
             self._previous[number] = signal.signal(number, self._handle)
@@ -48,7 +48,7 @@ class Interruption:
         for number, handler in self._previous.items():
             signal.signal(number, handler)
         signal.set_wakeup_fd(self._previous_file)
-        self._telling.close()
+        self._signaling.close()
 
     def _handle(self, number: int, frame: FrameType | None) -> None:
         if self.asked:

@@ -28,7 +28,7 @@ _AROUND, _LEFT_OUT = 2, 0.001
 """Pixels to each side whose mean luminance errors are relative to; the part of the pixels, the worst, left out."""
 EVENNESS = 2.25
 """Factor by which the variance of the mean of many iterations is lower than if they were independent, as their sample
-points are even: along edges the mean of 64 has 1.5 times less error than two halves of them tell
+points are even: along edges the mean of 64 has 1.5 times less error than two halves of them show
 (film/noise_estimate.py). Photons have no such gain, as the guide sends them elsewhere and radii shrink."""
 _NO_NOISE = 1e-9
 """Relative variance that counts as none."""
@@ -116,7 +116,7 @@ class NoiseVariances:
     """Part of v_c that photons made in the last iteration, at the ends of gathering rays."""
 
     def with_first(self, samples: NoiseSamples) -> "NoiseVariances":
-        """After the first iteration, whose radii are too wide to tell the photons' noise."""
+        """After the first iteration, whose radii are too wide to show the photons' noise."""
         return NoiseVariances(rest_photon_variance=_relative_mean(np.square(samples.signed_final_gather), samples.all))
 
     def with_next(self, photons: int, samples: NoiseSamples, rest: np.ndarray, growth: float) -> "NoiseVariances":

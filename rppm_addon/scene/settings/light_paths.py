@@ -9,7 +9,7 @@ from .setting_info import setting
 
 _MOST_BOUNCES = 1024
 MOST_SEGMENTS = 1024
-"""Most rays of a path: as many as a photon's record can tell apart."""
+"""Most rays of a path: as many as a photon's record can distinguish."""
 _MOST_PASSED = 32
 """Most segments through surfaces that a path does not see, such as objects hidden from the camera; no limit counts
 them."""

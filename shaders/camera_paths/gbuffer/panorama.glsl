@@ -56,7 +56,7 @@ PanoramaPoint fisheye_equisolid(vec2 at) {
     float half_sine = 0.5 * length(across) / camera.lens;
     bool is_inside = half_sine <= sin(0.25 * camera.field_of_view);
     float solid_angle = camera.sensor.x * camera.sensor.y / (camera.lens * camera.lens);
-    // The share is the sine of half the angle.
+    // The fraction is the sine of half the angle.
     float sine = 2.0 * half_sine * sqrt(max(1.0 - half_sine * half_sine, 0.0));
     return PanoramaPoint(off_axis(sine, 1.0 - 2.0 * half_sine * half_sine, across), is_inside ? solid_angle : 0.0);
 }

@@ -72,7 +72,7 @@ void main() {
     vec3 shading = triangle_normal(triangle, vec3(1.0 - b.x - b.y, b));
     shading = length(shading) > 1e-6 ? normalize(shading) : geometric;
     vec3 above = seen_from(position, shading, geometric);
-    // The differentials are those of half a texel. A vertex stands for its share of the triangle.
+    // The differentials are those of half a texel. A vertex stands for its part of the triangle.
     vec3 across = texel.differentials.x * e1 + texel.differentials.z * e2;
     vec3 upward = texel.differentials.y * e1 + texel.differentials.w * e2;
     bool is_vertex = texel.differentials == vec4(0.0);

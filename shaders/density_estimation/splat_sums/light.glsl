@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sums of photons again, apart by what passes of light tell apart. Included behind add.glsl or collect.glsl.
+// The sums of photons again, split as the passes of light are. Included behind add.glsl or collect.glsl.
 
 #include "common/path_history.glsl"
 #include "density_estimation/splat_sums/light_sums.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A random sign for each photon path, by which sums with signs tell the variance that photons make (sums.glsl). The
+// A random sign for each photon path, by which sums with signs show the variance that photons make (sums.glsl). The
 // includer declares the members of SUM_PARAMETERS, of which counting is the seed.
 
 #include "density_estimation/splat_sums/sums.glsl"

@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A shadow ray from a catcher to one of several samples of the lights, chosen by the light that it would give:
-// how often it is free tells the share of the light that arrives (resampling, Talbot et al. 2005).
+// how often it is free gives the fraction of the light that arrives (resampling, Talbot et al. 2005).
 
 layout(local_size_x = 64) in;
 

@@ -18,7 +18,7 @@ readonly buffer Rays;
 readonly buffer CameraPaths;
 readonly buffer Attributes;
 readonly buffer Identifiers { uint identifiers[]; };
-// of a pixel so many pairs of an identifier, 0 where there is none yet, and the bits of its share
+// of a pixel so many pairs of an identifier, 0 where there is none yet, and the bits of its coverage
 buffer Pairs { uvec2 pairs[]; };
 // of a path of the band: 1 and the segment that ended at a catcher, or 0
 buffer CaughtAfter { uint caught_after[]; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nodes that tell about the place, the object and the path. Needs the camera members of the parameters.
+// Nodes about the place, the object and the path. Needs the camera members of the parameters.
 
 #include "common/differential_frame.glsl"
 

@@ -4,7 +4,7 @@
 #include "materials/lobes.glsl"
 
 // texture_factor: 1 where the color is that of a texture, tinted, 0 where there is none. Share `transparent` is passed
-// unbent, share `glass` of the rest is glass, if it is the greater part.
+// unbent, the fraction `glass` of the rest is glass, if it is the greater part.
 void node_plain_surface(inout ClosureBuilder builder, float weight, vec3 color, vec3 texel, float texture_factor,
                         float metallic, float roughness, float glass, float transparent, vec3 emission) {
     const float dielectric = 0.04, index = 1.45;

@@ -10,7 +10,7 @@ vec3 direction_or(vec3 direction, vec3 other) {
 uint ray_count(float samples) { return uint(clamp(samples, 1.0, float(MAX_NODE_RAYS))); }
 #endif
 
-// The share of the rays around the normal that come as far as the distance.
+// The fraction of the rays around the normal that come as far as the distance.
 void node_ambient_occlusion(Surface surface, int inside, int only_local, uint place, uint level, vec3 color_in,
                             float reach, vec3 normal, float samples, out vec3 color, out float ao) {
     ao = 1.0;

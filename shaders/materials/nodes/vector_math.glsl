@@ -6,7 +6,7 @@ vec3 project(vec3 a, vec3 b) {
     return size2 != 0.0 ? dot(a, b) / size2 * b : vec3(0.0);
 }
 
-// Less exact than that of numbers: just below a multiple of b it may return b's share of rounding instead of b.
+// Less exact than that of numbers: just below a multiple of b it may return b's part of the rounding instead of b.
 vec3 vector_modulo(vec3 a, vec3 b) { return vec3(notEqual(b, vec3(0.0))) * (a - b * trunc(safe_divide(a, b))); }
 
 // A function for each operation.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A part of a light's photons is aimed at the objects that make caustics, so that a small glass in a
-// large room gets its share. The pdf of both ways together divides the flux (balance heuristic,
+// large room gets its part. The pdf of both ways together divides the flux (balance heuristic,
 // Veach 1997, section 9.2), so aiming moves noise and no energy. Needs the member target_count.
 
 #include "common/iteration.glsl"
@@ -16,8 +16,8 @@ uint aimed_photons(Light light) {
     return aims ? light.photon_count / aiming_period(light) : 0u;
 }
 
-// The share that this rule gives to just so many photons keeps the estimate exact.
-float aimed_share(Light light) { return float(aimed_photons(light)) / float(max(light.photon_count, 1u)); }
+// The fraction that this rule gives to just so many photons keeps the estimate exact.
+float aimed_fraction(Light light) { return float(aimed_photons(light)) / float(max(light.photon_count, 1u)); }
 
 // One minus the cosine of the cone under which a sphere is seen; 0 from inside, where it is no target.
 float target_cone(vec4 target, vec3 from) {

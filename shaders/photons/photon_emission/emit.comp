@@ -28,8 +28,8 @@ float light_extent(Light light) {
     return is_area_light(light) ? 0.5 * (length(light.axis_u) + length(light.axis_v)) : light.radius;
 }
 
-// How the neighbors of a photon leave. The environment and emissive meshes are as large as what they light, and tell
-// nothing but how far off they are. before: from the light to where the ray begins.
+// Directions and places in which the neighbors of a photon leave. The environment and emissive meshes are as large as
+// the surfaces that they light: of these, only the distance counts. before: from the light to where the ray begins.
 PhotonDifferential leaving_differential(Light light, Emission emission, float before) {
     bool parallel = light.kind == LIGHT_SUN;
     if (parallel || light.kind == LIGHT_WORLD) before = INFINITY_DISTANCE;
@@ -71,10 +71,10 @@ void main() {
     uvec4 seed = pcg4d(uvec4(2u * number + (aimed ? 1u : 0u), iteration.number, iteration.seed, STAGE_EMISSION));
     vec2 u_parts = scrambled_sobol(within, pcg4d(seed + 1u));
     EmissionChoice choice = EmissionChoice(scrambled_sobol(within, seed), scrambled_sobol(within, pcg4d(seed)),
-                                           u_parts.x, u_parts.y, aimed, aimed_share(light));
+                                           u_parts.x, u_parts.y, aimed, aimed_fraction(light));
     photon_cells[index] = NO_CELL;
     if (!aimed) {
-        // Evenly spaced from a random start: each cell gets its share but for one photon.
+        // Evenly spaced from a random start: each cell gets its part but for one photon.
         uint step = 0xffffffffu / max(light.photon_count - aimed_photons(light), 1u);
         uint cell = choose_guide_cell(light, seed.x + within * step + pcg4d(seed + within).y % step);
         vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;

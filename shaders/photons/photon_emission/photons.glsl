@@ -18,14 +18,14 @@ struct Emission {
     float reach;
 };
 
-// Random numbers of one photon, whether it is aimed, and the share of those that are.
+// Random numbers of one photon, whether it is aimed, and the fraction of those that are.
 struct EmissionChoice {
     vec2 place;
     vec2 direction;
     float part;
     float target;
     bool aimed;
-    float aimed_share;
+    float aimed_fraction;
 };
 
 // Pdf of both ways together over the plain one's measure: guided photons have the plain pdf times the
@@ -33,7 +33,7 @@ struct EmissionChoice {
 float mixed_pdf(Light light, float plain, vec2 place, vec2 direction, float aimed, bool targets_seen,
                 EmissionChoice choice) {
     float guided = plain * guide_pdf(light, guide_cell(light, place, direction));
-    return mix(guided, targets_seen ? aimed : plain, choice.aimed_share);
+    return mix(guided, targets_seen ? aimed : plain, choice.aimed_fraction);
 }
 
 Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, EmissionChoice choice) {

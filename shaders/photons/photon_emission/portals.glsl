@@ -60,7 +60,7 @@ float world_disk_pdf(Light light, vec3 t, vec3 b, vec2 place, vec2 direction_squ
     float radius = iteration.scene_radius, shadows = target_shadows();
     bool has_targets = shadows > 0.0;
     float plain = dot(place, place) <= radius * radius ? 1.0 / (PI * radius * radius) : 0.0;
-    choice.aimed_share = aimed_share(light);
+    choice.aimed_fraction = aimed_fraction(light);
     return mixed_pdf(light, plain, disk_to_square(place / radius), direction_square,
                      has_targets ? target_shadow_pdf(t, b, shadows, place) : 0.0, has_targets, choice);
 }

@@ -56,7 +56,7 @@ def export_view(context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> C
         if camera.type == "PANO":
             across, upward = frame_shape(context.scene.render, *frame_size(context.scene.render))
             result.panorama = export_panorama(camera, camera_object.name, across, upward)
-            result.window = _shares_of_frame(frame, camera)
+            result.window = _fractions_of_frame(frame, camera)
             result.orthographic = False
     return result
 
@@ -81,7 +81,7 @@ def _frame_in_view(
     return (x_min - left) / width, (x_max - left) / width, (y_min - bottom) / height, (y_max - bottom) / height
 
 
-def _shares_of_frame(
+def _fractions_of_frame(
     frame: tuple[float, float, float, float], camera: bpy.types.Camera
 ) -> tuple[float, float, float, float]:
     """left, right, bottom, top of the region in shares of a panorama's frame."""

@@ -31,7 +31,7 @@ def kept(image: bpy.types.Image) -> Image | None:
 
 
 def keep(image: bpy.types.Image, pixels: Image) -> None:
-    """Keep what was read, where it can be told later whether it still holds."""
+    """Keep what was read, where a later export can see whether it still holds."""
     key = _key(image)
     if not _is_keeping or key is None:
         return
@@ -42,7 +42,7 @@ def keep(image: bpy.types.Image, pixels: Image) -> None:
 
 
 def _key(image: bpy.types.Image) -> tuple | None:
-    """Return a key that tells whether an image is the same; None for images that Blender changes without telling."""
+    """Return a key that tells whether an image is the same; None for images that Blender changes without a report."""
     if image.source != "FILE" or image.is_dirty:
         return None
     packed = image.packed_file

@@ -100,7 +100,7 @@ class MotionExporter:
         placed: what the frame itself has, with identities. Returns what is to be seen.
         """
         source = self._depsgraph.scene_eval
-        # As scenes count them: Blender applies time remapping to a frame that it is told to go to.
+        # As scenes count them: Blender applies time remapping to a frame that is set.
         frame, render = source.frame_current + source.frame_subframe, source.render
         length = 2.0 if self._neighbors else render.motion_blur_shutter
         seconds = length * render.fps_base / render.fps

@@ -9,11 +9,11 @@ from ..meshes.attributes import attribute_values
 from .tubes import Rings, Strands
 
 INTERCEPT, LENGTH, THICKNESS, CURVE_RANDOM = ".intercept", ".length", ".thickness", ".curve_random"
-"""Names under which is exported what Hair Info tells."""
+"""Names of the exported values of Hair Info."""
 POINT_PLACE, POINT_RADIUS, POINT_RANDOM = ".point_position", ".point_radius", ".point_random"
-"""Names under which is exported what Point Info tells."""
+"""Names of the exported values of Point Info."""
 OF_ROUND_SHAPES = {INTERCEPT, LENGTH, THICKNESS, CURVE_RANDOM, POINT_PLACE, POINT_RADIUS, POINT_RANDOM}
-"""Other surfaces have none of them, and nobody is told."""
+"""Attributes of hair and points. A surface that lacks them gets no warning."""
 
 
 def strand_values(strands: Strands, rings: Rings, name: str) -> np.ndarray | None:
@@ -36,8 +36,10 @@ def strand_values(strands: Strands, rings: Rings, name: str) -> np.ndarray | Non
         return rings.per_vertex(rings.of_strands(whole[:, None].astype(np.float32)))
     counts = np.diff(strands.starts)
     passed -= np.repeat(passed[firsts], counts)
-    share = np.divide(passed, np.repeat(whole, counts), out=np.zeros_like(passed), where=np.repeat(whole > 0.0, counts))
-    return rings.per_vertex(rings.of_keys(share[:, None].astype(np.float32)))
+    fractions = np.divide(
+        passed, np.repeat(whole, counts), out=np.zeros_like(passed), where=np.repeat(whole > 0.0, counts)
+    )
+    return rings.per_vertex(rings.of_keys(fractions[:, None].astype(np.float32)))
 
 
 def read_values(data: bpy.types.Curves | bpy.types.PointCloud, name: str) -> tuple[np.ndarray, str] | None:

@@ -100,9 +100,9 @@ def _paths(source: bpy.types.Object, hair: HairSystem, to_object: np.ndarray) ->
     found = None if found is None else _moved(found, to_object)
     picked = range(0, hair.strand_count, max(hair.strand_count // _SAMPLES, 1))
     if found is not None:
-        told = _paths_by_function(source, hair, picked, to_object)
-        size = max(float(np.abs(told).max(initial=0.0)), 1e-6)
-        if np.allclose(found[list(picked)], told, rtol=0.0, atol=1e-4 * size):
+        checked = _paths_by_function(source, hair, picked, to_object)
+        size = max(float(np.abs(checked).max(initial=0.0)), 1e-6)
+        if np.allclose(found[list(picked)], checked, rtol=0.0, atol=1e-4 * size):
             return found
     return _paths_by_function(source, hair, range(hair.strand_count), to_object)
 
@@ -116,8 +116,8 @@ def _paths_by_function(source: bpy.types.Object, hair: HairSystem, strands: rang
     ]
     paths = np.array(keys, np.float32).reshape(len(strands), hair.steps, 3)
     # Of steps behind the end of a path that was cut the function says nothing: paths stay there.
-    told = np.where(paths.any(axis=-1), np.arange(hair.steps), 0)
-    steps = np.maximum.accumulate(told, axis=1)
+    known_steps = np.where(paths.any(axis=-1), np.arange(hair.steps), 0)
+    steps = np.maximum.accumulate(known_steps, axis=1)
     return _moved(np.take_along_axis(paths, steps[:, :, None], axis=1), to_object)
 
 

@@ -28,7 +28,7 @@ class MaterialTable:
         self._on_round_shapes: set[int] = set()
         """Places of those that are on strands or points."""
         self.untracked: set[int] = set()
-        """session_uid of those that rest on what changes without the depsgraph telling."""
+        """session_uid of the materials that depend on values that change without a report of the depsgraph."""
 
     def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
