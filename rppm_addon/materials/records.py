@@ -9,9 +9,7 @@ from ..gl.buffers.storage_blocks import StorageBlock
 
 MATERIAL = Record(
     "Material",
-    medium_absorption="vec3",
     program="uint",
-    medium_emission="vec3",
     first_constant="uint",
     opaque_shadow="uint",
     passes_shadow_rays="uint",
@@ -19,15 +17,37 @@ MATERIAL = Record(
     pass_index="uint",
     medium="uint",
     medium_bits="uint",
-    unused0="uint",
-    unused1="uint",
 )
 """A material: the program that evaluates its node graph, and where its constants start in MaterialData; whether lights
 shine through where it is transparent (0) or not (1), and whether shadow rays find that light (1) or photons alone do
 (0); whether what it scatters depends on where it is seen from (1); its index for compositors; and the number of the
-medium inside, from 1 on, 0 where there is none. ``medium_absorption``, in 1/m, and ``medium_emission``, in
-W/(m^3 sr), are not of this material: item n - 1 has those of medium n. ``medium_bits``: of the number of a medium in a
-path's flags, the same everywhere."""
+medium inside, from 1 on, 0 where there is none. ``medium_bits`` is the number of bits that a medium's number takes in
+a path's flags, the same in every material."""
+MEDIUM = Record(
+    "Medium",
+    absorption="vec3",
+    first_function="uint",
+    scattering="vec3",
+    function_count="uint",
+    emission="vec3",
+    unused0="uint",
+)
+"""A participating medium: its absorption and scattering coefficients, 1/m, the radiance that it emits by length,
+W/(m^3 sr), and the place of its phase functions in PhaseFunctions."""
+StorageBlock("Media", "Medium media[];")
+
+
+class PhaseFunctionKind(enum.IntEnum):
+    """Phase functions, by the names of Blender's Volume Scatter node."""
+
+    HENYEY_GREENSTEIN = 0
+    """Parameter: the anisotropy g."""
+
+
+PHASE_FUNCTION = Record("PhaseFunction", scattering="vec3", kind="uint", parameters="vec4")
+"""A part of a medium's scattering: its scattering coefficient, 1/m, and the phase function by which it scatters."""
+StorageBlock("PhaseFunctions", "PhaseFunction phase_functions[];")
+Constants("PhaseFunctionKinds", PHASE=PhaseFunctionKind)
 MEDIA_BITS = 20
 """Bits that paths have for the numbers of the media that they are in (shaders/materials/medium.glsl)."""
 MAX_MEDIA = (1 << MEDIA_BITS // 2) - 1

@@ -19,9 +19,9 @@ from .compiler.constant_layout import ConstantLayout
 from .compiler.scene_graphs import NO_EFFECT, SceneGraphs, TextUse, UnattachedGraph
 from .evaluation import GraphEvaluator, LightSurface
 from .images import image_records
-from .records import IMAGE_ENTRY, MATERIAL, MAX_MEDIA
+from .media import MediaTables
+from .records import IMAGE_ENTRY, MATERIAL
 from .traits.emitted import Emits
-from .traits.interiors import Interior
 from .traits.transparency import passes_shadow_rays
 from .traits.view_dependence import depends_on_view
 
@@ -65,6 +65,7 @@ class MaterialTables(BufferSet):
     _image_entries = StorageBuffer("material Images", IMAGE_ENTRY, texel_bytes=16, block="Images")
     _texels = StorageBuffer("material Texels", "uint", texel_bytes=16, block="Texels")
     _albedo_tables = StorageBuffer("material AlbedoTables", "float", texel_bytes=16, block="AlbedoTables")
+    media = Part(MediaTables)
     _evaluator = Part(GraphEvaluator)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
@@ -76,10 +77,6 @@ class MaterialTables(BufferSet):
         self.emits: list[Emits] = []
         self.any_depends_on_view = False
         """Whether what a material scatters depends on where it is seen from."""
-        self.materials_with_media: frozenset[int] = frozenset()
-        """By index, those whose inside is filled."""
-        self.media_emit = False
-        """True where any medium shines."""
         self.any_passes_shadow_rays = False
         """True where shadow rays may pass the surfaces of a material."""
         self.displacing: dict[int, DisplacingGraph] = {}
@@ -118,26 +115,8 @@ class MaterialTables(BufferSet):
         self.attribute_names = list(layout.attributes)
         self._data.upload(layout.data())
         self._upload_images(layout.images())
-        self._number_media(scene, records, graphs.interiors)
+        self.media.build(scene, records, graphs.interiors, graphs.world_interior, self.evaluate)
         self._materials.upload(records)
-
-    def _number_media(self, scene: Scene, records: np.ndarray, interiors: list[Interior]) -> None:
-        """Enter what the materials' interiors are made of into their records."""
-        coefficients = np.zeros((len(records), 2, 3), np.float32)
-        for values, interior in zip(coefficients, interiors, strict=True):
-            for value, graph in zip(values, (interior.absorption, interior.emission), strict=True):
-                if graph is not None:
-                    value[:] = np.maximum(self.evaluate(graph)[0, 0], 0.0)
-        filled = np.flatnonzero(coefficients.any(axis=(1, 2)))
-        if len(filled) > MAX_MEDIA:
-            scene.warn(f"{len(filled)} materials have volumes; those of the first {MAX_MEDIA} are rendered")
-            filled = filled[:MAX_MEDIA]
-        records["medium"][filled] = 1 + np.arange(len(filled))
-        records["medium_bits"] = max(len(filled).bit_length(), 1)
-        records["medium_absorption"][: len(filled)] = coefficients[filled, 0]
-        records["medium_emission"][: len(filled)] = coefficients[filled, 1]
-        self.materials_with_media = frozenset(filled.tolist())
-        self.media_emit = bool(coefficients[filled, 1].any())
 
     def follow(self, scene: Scene) -> None:
         """Warn in this scene and evaluate as its camera sees, though what was built may have come with another."""

@@ -90,6 +90,8 @@ class World:
     radiance: np.ndarray = field(default_factory=lambda: np.zeros(3), metadata=declared(3))
     """(3,) float64 W/(m^2 sr); multiplies what the graph gives where there is one."""
     graph: NodeGraph | None = None
+    volume: NodeGraph | None = None
+    """Nodes of the medium that fills the world, as Material.interior."""
     mist: Mist = field(default_factory=Mist)
     light_group: str = ""
     """As of a light."""

@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
+// lint: MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // lint: PORTALS=1
@@ -17,6 +18,7 @@ layout(local_size_x = 64) in;
 #include "common/transparency.glsl"
 #include "common/path_history.glsl"
 readonly buffer Materials;
+readonly buffer Media;
 #include "materials/medium.glsl"
 uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -143,8 +145,8 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
         if (sampled.transmitted || !(largest(sampled.weight) > 0.0) || dot(sampled.direction, geometric) <= 0.0)
             continue;
         ScatterPoint from = ScatterPoint(LitPoint(closure.position, vec3(0.0), false, light_set), 0.0, 0.0, false, 0u);
-        IntersectedLights objects = intersect_lights(from, sampled.direction, vec2(0.0, INFINITY_DISTANCE), RAY_GLOSSY,
-                                                     candidates.u, path_absorption(flags));
+        IntersectedLights objects =
+            intersect_lights(from, sampled.direction, vec2(0.0, INFINITY_DISTANCE), RAY_GLOSSY, candidates.u, flags);
         candidates.u = objects.u;
         vec3 reflected = throughput * sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction)
                          * facet_fresnel(lobe, dot(wo, normalize(wo + sampled.direction))).reflection_probability;
@@ -154,7 +156,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
         uint emissive;
         Hit hit = intersect_emitters(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
-        reflected *= segment_transmittance(flags, hit.distance);
+        reflected *= segment_transmittance(flags, closure.position, sampled.direction, hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
                       Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
@@ -211,7 +213,7 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     parts = Parts(fraction_of(parts.glossy, scattered), fraction_of(parts.transmission, scattered));
     uint beyond = path.flags;
     if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
-    vec3 transmittance = segment_transmittance(beyond, sampled.distance);
+    vec3 transmittance = segment_transmittance(beyond, closure.position, sampled.direction, sampled.distance);
     return Arriving(throughput * transmittance * scattered * sampled.weight / choice.probability, sampled.direction,
                     sampled.distance, choice.light, sampled.triangle);
 }
@@ -242,7 +244,7 @@ void main() {
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > iteration.camera_bounces) return;
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathered = is_final_gather(path), gathers = can_gather(path, closure);
-    vec3 throughput = path.throughput * segment_transmittance(flags, closure.distance);
+    vec3 throughput = path.throughput * segment_transmittance(flags, ray.origin, ray.direction, closure.distance);
     uvec4 choices =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_DIRECT_LIGHT << 24u));
 #ifdef HAIR_LOBES

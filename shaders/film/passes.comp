@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
+// lint: MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than
@@ -17,6 +18,7 @@ layout(local_size_x = 64) in;
 #include "film/first_surface.glsl"
 #include "camera_paths/gbuffer/projections.glsl"
 readonly buffer Materials;
+readonly buffer Media;
 #include "materials/medium.glsl"
 uniform Parameters { PassParameters parameters; };
 #include "film/passes.glsl"
@@ -140,7 +142,8 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
 
 void add_colors(CameraPath path, Closure closure, vec3 viewer) {
     LightColors colors = light_colors(index, closure, viewer);
-    vec3 throughput = path.throughput * segment_transmittance(path.flags, closure.distance);
+    vec3 throughput =
+        path.throughput * segment_transmittance(path.flags, rays[index].origin, -viewer, closure.distance);
     add_to_pass(PASS_DIFFUSE_COLOR, index, throughput * colors.diffuse);
     add_to_pass(PASS_GLOSSY_COLOR, index, throughput * colors.glossy);
     add_to_pass(PASS_TRANSMISSION_COLOR, index, throughput * colors.transmission);

@@ -228,7 +228,7 @@ struct IntersectedLights {
 
 // kind, leaf: by which shadow rays choose the light.
 void intersect_light(inout IntersectedLights sum, uint number, uint kind, uint leaf, ScatterPoint from, vec3 direction,
-                     vec2 distances, uint ray, vec3 absorption) {
+                     vec2 distances, uint ray, uint media_flags) {
     Light light = lights[number];
     vec3 origin = from.lit.position;
     if ((light.flags & ray & RAYS_WITH_VISIBILITY) == 0u) return;
@@ -239,7 +239,8 @@ void intersect_light(inout IntersectedLights sum, uint number, uint kind, uint l
     float way = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance - distances.x;
     if (from.pdf > 0.0 && largest(radiance) > 0.0)
         pdf *= light_probability(from.lit, from.environment_irradiance, kind, leaf);
-    radiance *= exp(-absorption * way) * scatter_mis_weight(from.pdf, pdf);
+    radiance *= segment_transmittance(media_flags, origin + distances.x * direction, direction, way)
+                * scatter_mis_weight(from.pdf, pdf);
     sum.radiance += radiance;
 #ifdef REPORT_INTERSECTED_LIGHT
     REPORT_INTERSECTED_LIGHT(number, radiance);
@@ -254,10 +255,11 @@ void intersect_light(inout IntersectedLights sum, uint number, uint kind, uint l
 }
 
 // Intersects a ray with the light objects between two distances. They occlude nothing, and the camera sees all. from:
-// in the light set of an object. absorption: from the nearer of the distances on, 1/m. Suns first, then down the tree:
-// one loop, since drivers without calls have the code of a light as often as it stands here.
+// in the light set of an object. media_flags: flags of a path in the media that the ray crosses from the nearer of the
+// distances on. Suns first, then down the tree: one loop, since drivers without calls have the code of a light as often
+// as it stands here.
 IntersectedLights intersect_lights(ScatterPoint from, vec3 direction, vec2 distances, uint ray, float u,
-                                   vec3 absorption) {
+                                   uint media_flags) {
     IntersectedLights sum = IntersectedLights(vec3(0.0), vec3(0.0), 0u, 0.0, 0.0, u);
     vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
     uint sun = distances.y >= INFINITY_DISTANCE ? 0u : iteration.sun_count;
@@ -280,7 +282,7 @@ IntersectedLights intersect_lights(ScatterPoint from, vec3 direction, vec2 dista
             if (node == 1u) node = 0u;
         }
         if (met && ((ray & RAY_CAMERA) != 0u || has_set(at.light_sets, from.lit.light_set)))
-            intersect_light(sum, at.member, kind, leaf, from, direction, distances, ray, absorption);
+            intersect_light(sum, at.member, kind, leaf, from, direction, distances, ray, media_flags);
     }
     return sum;
 }
@@ -317,7 +319,7 @@ Hit intersect_emitters(vec3 origin, vec3 direction, uint from_triangle, uint lig
 }
 
 // Radiance of the light objects that a ray intersects on its way through a medium. from: where it was scattered.
-vec3 visible_light(ScatterPoint from, Ray way, float far, uint ray, vec3 absorption) {
+vec3 visible_light(ScatterPoint from, Ray way, float far, uint ray, uint media_flags) {
     float gone = distance(from.lit.position, way.origin);
-    return intersect_lights(from, way.direction, vec2(gone, gone + far), ray, 0.0, absorption).radiance;
+    return intersect_lights(from, way.direction, vec2(gone, gone + far), ray, 0.0, media_flags).radiance;
 }

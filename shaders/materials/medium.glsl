@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Homogeneous media inside closed surfaces. As in Cycles, only materials with a volume fill their inside, and media
-// that overlap add up. A path carries the numbers of those that it is in: the upper 20 bits of its flags have as many
-// places as the scene's media leave room for, the lowest for the medium that it came into last; 0 is none.
-// The includer declares before the block Materials.
+// Participating media of paths. Only materials with a volume fill the inside of their surfaces, and media that overlap
+// add up, as in Cycles. A path carries the numbers of the media that it is in: the upper 20 bits of its flags have as
+// many places as the scene's media leave room for, the lowest for the medium that it entered last; 0 is none. All paths
+// are in medium 0, the world's. Scenes without media are compiled without MEDIA. The includer declares before the block
+// Materials, and with MEDIA the block Media.
 
 #include <Media>
 const uint PATH_MASK = (1u << FIRST_MEDIUM) - 1u;
 
+#ifdef MEDIA
 uint medium_bits() { return materials[0].medium_bits; }
 
 uint enter_medium(uint media, uint medium) {
@@ -22,36 +24,50 @@ uint leave_medium(uint media, uint medium) {
     return media;
 }
 
-// Coefficients in 1/m, and radiance in W/(m^2 sr) by length.
-struct Medium {
+// Coefficients of all media that a path is in, 1/m, and the radiance that they emit by length, W/(m^3 sr).
+struct MediumCoefficients {
     vec3 absorption;
+    vec3 scattering;
     vec3 emission;
 };
 
-Medium path_medium(uint flags) {
-    Medium medium = Medium(vec3(0.0), vec3(0.0));
-    uint bits = medium_bits(), mask = (1u << bits) - 1u;
-    for (uint media = flags >> FIRST_MEDIUM; media != 0u; media >>= bits) {
-        uint number = (media & mask) - 1u;
-        medium.absorption += materials[number].medium_absorption;
-        medium.emission += materials[number].medium_emission;
-    }
+// The number of a medium of a path, which is taken from the set of those that are left; the last is the world's, 0.
+uint next_medium(inout uint set, uint bits) {
+    uint medium = set & ((1u << bits) - 1u);
+    set >>= bits;
     return medium;
 }
 
-vec3 path_absorption(uint flags) { return path_medium(flags).absorption; }
+MediumCoefficients path_medium(uint flags) {
+    MediumCoefficients sum = MediumCoefficients(media[0].absorption, media[0].scattering, media[0].emission);
+    uint bits = medium_bits();
+    for (uint set = flags >> FIRST_MEDIUM; set != 0u;) {
+        uint medium = next_medium(set, bits);
+        sum.absorption += media[medium].absorption;
+        sum.scattering += media[medium].scattering;
+        sum.emission += media[medium].emission;
+    }
+    return sum;
+}
 
-// What is left of the light of a segment.
-vec3 segment_transmittance(uint flags, float distance) { return exp(-path_absorption(flags) * distance); }
+// In 1/m.
+vec3 path_extinction(uint flags) {
+    MediumCoefficients medium = path_medium(flags);
+    return medium.absorption + medium.scattering;
+}
 
-// Radiance of the media along a segment, at its beginning. What does not absorb has no limit, and to infinity gives
-// none.
-vec3 segment_emission(uint flags, float distance) {
-    if (flags >> FIRST_MEDIUM == 0u) return vec3(0.0);
-    Medium medium = path_medium(flags);
-    vec3 depth = medium.absorption * distance, series = distance * (1.0 - 0.5 * depth);
-    vec3 length_seen =
-        mix((1.0 - exp(-depth)) / max(medium.absorption, vec3(1e-30)), series, lessThan(depth, vec3(1e-3)));
+// Fraction of the light of a segment that is neither absorbed nor scattered.
+vec3 segment_transmittance(uint flags, vec3 origin, vec3 direction, float distance) {
+    return exp(-path_extinction(flags) * distance);
+}
+
+// Radiance that the media along a segment emit, at its beginning. A medium without extinction has no limit, and to
+// infinity it gives none.
+vec3 segment_emission(uint flags, vec3 origin, vec3 direction, float distance) {
+    MediumCoefficients medium = path_medium(flags);
+    vec3 extinction = medium.absorption + medium.scattering;
+    vec3 depth = extinction * distance, series = distance * (1.0 - 0.5 * depth);
+    vec3 length_seen = mix((1.0 - exp(-depth)) / max(extinction, vec3(1e-30)), series, lessThan(depth, vec3(1e-3)));
     return medium.emission * mix(length_seen, vec3(0.0), greaterThan(length_seen, vec3(1e20)));
 }
 
@@ -59,7 +75,12 @@ vec3 segment_emission(uint flags, float distance) {
 uint cross_surface(uint flags, uint material, bool backfacing) {
     uint medium = materials[material].medium;
     if (medium == 0u) return flags;
-    uint media = flags >> FIRST_MEDIUM;
-    media = backfacing ? leave_medium(media, medium) : enter_medium(media, medium);
-    return (flags & PATH_MASK) | media << FIRST_MEDIUM;
+    uint set = flags >> FIRST_MEDIUM;
+    set = backfacing ? leave_medium(set, medium) : enter_medium(set, medium);
+    return (flags & PATH_MASK) | set << FIRST_MEDIUM;
 }
+#else
+vec3 segment_transmittance(uint flags, vec3 origin, vec3 direction, float distance) { return vec3(1.0); }
+vec3 segment_emission(uint flags, vec3 origin, vec3 direction, float distance) { return vec3(0.0); }
+uint cross_surface(uint flags, uint material, bool backfacing) { return flags; }
+#endif

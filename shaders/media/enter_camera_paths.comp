@@ -1,8 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint: TRAVERSAL=deep_cubemap/traverse.glsl
-// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
-// lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl MEDIA=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
+// lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
 // The media that camera paths begin in: those at the camera, and what lies on the way from there to where each ray
 // begins. Texels have no camera: their paths come to the surface from before it, and those to the world from nowhere.
 
@@ -20,6 +20,7 @@ readonly buffer Rays;
 buffer CameraPaths;
 readonly buffer Hits;
 readonly buffer Materials;
+readonly buffer Media;
 #include "media/crossings.glsl"
 
 uint media_before(Ray ray, uint triangle) {

@@ -1,8 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint: TRAVERSAL=deep_cubemap/traverse.glsl
-// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
-// lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl MEDIA=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
+// lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
 // The media that photons begin in: those at the middle of their light, and what lies on the way from there to where
 // each leaves it. Emissive meshes have no middle; around suns and the world there is nothing.
 
@@ -20,6 +20,7 @@ readonly buffer Rays;
 #include <LightFlags>
 buffer PhotonPaths;
 readonly buffer Materials;
+readonly buffer Media;
 #include "media/crossings.glsl"
 
 void main() {

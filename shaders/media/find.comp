@@ -1,8 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lint: TRAVERSAL=deep_cubemap/traverse.glsl
-// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
-// lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl MEDIA=1
+// lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
+// lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
 // The media at the middle of each light object, and behind them at the camera.
 
 layout(local_size_x = 64) in;
@@ -16,6 +16,7 @@ readonly buffer Attributes;
 readonly buffer MediumBoxes;
 #include "lights/light_table.glsl"
 readonly buffer Materials;
+readonly buffer Media;
 #include "media/crossings.glsl"
 
 void main() {

@@ -19,7 +19,7 @@ struct PhotonVertex {
 
 PhotonVertex photon_vertex(uint index, PhotonPath path, Ray ray) {
     Closure closure = closures[index];
-    vec3 flux = path.flux * segment_transmittance(path.flags, closure.distance);
+    vec3 flux = path.flux * segment_transmittance(path.flags, ray.origin, ray.direction, closure.distance);
     return PhotonVertex(index, path.flags, path.depth, flux, -ray.direction, closure,
                         ray.maximum_distance - closure.distance, photon_differentials[index].known != 0u);
 }

@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
+// lint: MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // TracePhotons: at the end of the ray of a photon path, store the photon and sample the next ray.
@@ -15,6 +16,7 @@ uniform Parameters { ScatterPhotonsParameters parameters; };
 readonly buffer Closures;
 #include "photons/parts.glsl"
 readonly buffer Materials;
+readonly buffer Media;
 #include "materials/medium.glsl"
 buffer Rays;
 buffer PhotonPaths;

@@ -19,6 +19,8 @@ class ShaderFeatures:
     """Whether materials reflect by the model of Ashikhmin and Shirley."""
     has_portals: bool = False
     """Whether the world's light comes in through portals."""
+    has_media: bool = False
+    """Whether volumes fill the world or the inside of surfaces."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -27,10 +29,16 @@ class ShaderFeatures:
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
+            scene.world.volume is not None or any(material.interior is not None for material in scene.materials),
         )
 
     @property
     def defines(self) -> dict[str, int]:
         """Macros of the features, for programs."""
-        macros = {"HAIR_LOBES": self.has_hair, "ASHIKHMIN_LOBES": self.has_ashikhmin, "PORTALS": self.has_portals}
+        macros = {
+            "HAIR_LOBES": self.has_hair,
+            "ASHIKHMIN_LOBES": self.has_ashikhmin,
+            "PORTALS": self.has_portals,
+            "MEDIA": self.has_media,
+        }
         return {name: 1 for name, has in macros.items() if has}

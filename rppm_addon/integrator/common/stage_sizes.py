@@ -39,8 +39,6 @@ class StageSizes:
     """Whether lights may shine on some objects only, or pass through some."""
     has_subsurface: bool = False
     """Whether light may go below surfaces."""
-    has_media: bool = False
-    """True where any material fills the inside of what it is on."""
     features: ShaderFeatures = field(default_factory=ShaderFeatures)
     """Features that programs are compiled for."""
 
@@ -64,7 +62,6 @@ class StageSizes:
             demands.is_filtered,
             _links_lights(scene),
             demands.has_subsurface or any(has_subsurface(material.graph) for material in scene.materials),
-            any(material.interior is not None for material in scene.materials),
             ShaderFeatures.of(scene, demands),
         )
 

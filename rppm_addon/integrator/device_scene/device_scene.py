@@ -188,11 +188,11 @@ class DeviceScene:
 
     def _warn_of_media(self, scene: Scene) -> None:
         """Warn of media of which it is not clear where they are, or whose light is lost."""
-        if not self.materials.materials_with_media:
+        if not self.materials.media.materials:
             return
-        warn_of_open_bodies(scene, self.materials.materials_with_media, self._checked_bodies)
+        warn_of_open_bodies(scene, self.materials.media.materials, self._checked_bodies)
         settings = scene.settings
-        if self.materials.media_emit and not (settings.use_final_gather and settings.camera_bounces > 0):
+        if self.materials.media.emit and not (settings.use_final_gather and settings.camera_bounces > 0):
             scene.warn("Volumes that emit light shine on surfaces by Final Gather only, which is off")
 
     @contextlib.contextmanager

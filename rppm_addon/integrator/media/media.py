@@ -7,7 +7,7 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.program import Bindable
+from ...gl.programs.program import Bindable, ComputeProgram
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.scene import Scene
 from ..camera_paths.importons import Importons
@@ -51,8 +51,8 @@ class Media(Stage):
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
-        """Stage.is_needed: where materials have a volume."""
-        return sizes.has_media
+        """Stage.is_needed: where materials or the world have a volume."""
+        return sizes.features.has_media
 
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
@@ -70,7 +70,7 @@ class Media(Stage):
             return False
         if self._scene is not context.scene or iteration.number == 1:
             self._scene = context.scene
-            boxes = _boxes(context.scene, context.materials.materials_with_media)
+            boxes = _boxes(context.scene, context.materials.media.materials)
             self._box_count = len(boxes)
             if self._box_count:
                 self._find(context, boxes)
@@ -82,13 +82,16 @@ class Media(Stage):
         self._boxes.upload(records)
         lights = len(context.lights.table)
         self._of_sources.require_items(lights + 1)
-        program = self._library.compute("media/find.comp", context.acceleration.traversal_defines)
+        program = self._compile("media/find.comp", context)
         program.run(lights + 1, {**context.blocks, **self.blocks}, self._parameters(context))
 
     def _enter(self, context: StageContext, active: ActivePaths, blocks: dict[str, Bindable], kernel: str) -> None:
-        program = self._library.compute(kernel, context.acceleration.traversal_defines)
+        program = self._compile(kernel, context)
         parameters = {**self._parameters(context), "has_camera": not self._has_texels}
         active.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
+
+    def _compile(self, kernel: str, context: StageContext) -> ComputeProgram:
+        return self._library.compute(kernel, {**context.acceleration.traversal_defines, "MEDIA": 1})
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))

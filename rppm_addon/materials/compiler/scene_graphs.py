@@ -55,6 +55,8 @@ class SceneGraphs:
         """Graphs of the materials that displace, by index of the material."""
         self.interiors = [Interior.of(material.interior) for material in materials]
         """Media inside the surfaces, by index of the material."""
+        self.world_interior = Interior.of(scene.world.volume)
+        """The medium that fills the world."""
         self.unattached = list(self._compile_unattached(materials))
 
     def _compile_surface(self, material: Material) -> None:
@@ -83,9 +85,13 @@ class SceneGraphs:
     def _compile_unattached(self, materials: list[Material]) -> Iterator[UnattachedGraph]:
         owners = [("The world", self._scene.world.graph)]
         owners += [(f'Light "{light.name}"', light.graph) for light in self._scene.lights]
-        for material, interior in zip(materials, self.interiors, strict=True):
-            owner = f'The volume of material "{material.name}"'
-            owners += [(owner, interior.absorption), (owner, interior.emission)]
+        volumes = [("The volume of the world", self.world_interior)]
+        volumes += [
+            (f'The volume of material "{material.name}"', interior)
+            for material, interior in zip(materials, self.interiors, strict=True)
+        ]
+        for owner, interior in volumes:
+            owners += [(owner, graph) for graph in interior.graphs]
             if interior.varies:
                 self._scene.warn(f"{owner} varies from place to place, which is not rendered; one value stands for all")
         for owner, graph in owners:

@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from ...scene.node_graphs import NodeGraph
 from ..nodes import KINDS
+from ..records import PhaseFunctionKind
 from .emitted import is_positive, light_variation, reachable
 
 _ABSORBING = {"volume_absorption": "density"}
@@ -16,6 +17,17 @@ _SURFACES = {"bsdf_principled": "emission_strength"}
 
 
 @dataclasses.dataclass(frozen=True)
+class Scattering:
+    """A part of a medium that scatters by one phase function."""
+
+    coefficient: NodeGraph
+    """Graph whose "emission" is the scattering coefficient, 1/m."""
+    kind: PhaseFunctionKind = PhaseFunctionKind.HENYEY_GREENSTEIN
+    parameters: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    """Parameters of the phase function (PhaseFunctionKind)."""
+
+
+@dataclasses.dataclass(frozen=True)
 class Interior:
     """A medium by graphs whose "emission" is the coefficient; None where there is none."""
 
@@ -23,8 +35,15 @@ class Interior:
     """In 1/m."""
     emission: NodeGraph | None = None
     """In W/(m^3 sr)."""
+    scattering: tuple[Scattering, ...] = ()
     varies: bool = False
     """True where the coefficients may depend on the place."""
+
+    @property
+    def graphs(self) -> list[NodeGraph]:
+        """The graphs of all coefficients."""
+        graphs = [self.absorption, self.emission, *(part.coefficient for part in self.scattering)]
+        return [graph for graph in graphs if graph is not None]
 
     @classmethod
     def of(cls, graph: NodeGraph | None) -> "Interior":
@@ -34,7 +53,7 @@ class Interior:
         if any(node.kind not in KINDS for node in graph.nodes):
             return cls(graph)  # which whoever compiles it reports
         absorption, emission = _part(graph, _ABSORBING), _part(graph, _EMITTING)
-        return cls(absorption, emission, bool(absorption or emission) and bool(light_variation(graph)))
+        return cls(absorption, emission, varies=bool(absorption or emission) and bool(light_variation(graph)))
 
 
 def _part(graph: NodeGraph, kinds: dict[str, str]) -> NodeGraph | None:

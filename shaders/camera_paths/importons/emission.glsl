@@ -11,19 +11,19 @@ void add_radiance(PathSegment segment, vec4 radiance) {
 // Media along the ray weaken what is behind them, and emit light themselves. Neighboring pixels reuse that light where
 // the ray is of a final gather.
 void handle_media(inout PathSegment segment) {
-    if (segment.path.flags >> FIRST_MEDIUM == 0u) return;
-    vec3 emitted = segment.path.throughput * segment_emission(segment.path.flags, segment.distance);
+    vec3 emitted = segment.path.throughput
+                   * segment_emission(segment.path.flags, segment.ray.origin, segment.ray.direction, segment.distance);
     if (is_final_gather(segment.path)) final_gather_hits[segment.index].radiance += emitted;
     else radiances[segment.index].rgb += emitted;
-    segment.path.throughput *= segment_transmittance(segment.path.flags, segment.distance);
+    segment.path.throughput *=
+        segment_transmittance(segment.path.flags, segment.ray.origin, segment.ray.direction, segment.distance);
 }
 
 // Radiance of the light objects that the ray intersects, at its origin.
 vec3 light_object_emission(PathSegment segment) {
     CameraPath path = segment.path;
     if (!path_collects_emission(path) || (path.flags & PATH_LIGHTS_FOUND) != 0u) return vec3(0.0);
-    return visible_light(segment.from, segment.ray, segment.distance, camera_ray_kind(path.flags),
-                         path_absorption(path.flags));
+    return visible_light(segment.from, segment.ray, segment.distance, camera_ray_kind(path.flags), path.flags);
 }
 
 // MIS weight of a ray that meets an emissive triangle, which shadow rays from its origin sample as well.

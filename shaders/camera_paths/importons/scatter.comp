@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
+// lint: MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // lint: PORTALS=1
@@ -18,6 +19,7 @@ layout(local_size_x = 64) in;
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
 readonly buffer Materials;
+readonly buffer Media;
 #include "materials/medium.glsl"
 uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"

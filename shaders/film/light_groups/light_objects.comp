@@ -23,6 +23,7 @@ readonly buffer LightGroupTable;
 readonly buffer FinalGatherOrigins;
 readonly buffer FinalGatherHits;
 readonly buffer Materials;
+readonly buffer Media;
 #include "materials/medium.glsl"
 
 uint path_index;
@@ -46,7 +47,7 @@ void main() {
         float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
         light_objects = path_throughput
                         * visible_light(scatter_point(path_index, path, ray), ray, distance,
-                                        camera_ray_kind(path.flags), path_absorption(path.flags));
+                                        camera_ray_kind(path.flags), path.flags);
     }
     radiance_before[path_index] = vec4(radiances[path_index].rgb + light_objects, 0.0);
 }
