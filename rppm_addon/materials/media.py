@@ -1,20 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Participating media of a scene on the device: the volumes inside surfaces, and the world's."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, StorageBuffer
 from ..gl.context.context import Context
 from ..gl.programs.programs import ProgramLibrary
-from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
 from .records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
-from .traits.interiors import Interior
-
-Evaluate = Callable[[NodeGraph], np.ndarray]
-"""Gives the (height, width, 3) float32 coefficient of a node graph, 1/m or W/(m^3 sr)."""
+from .traits.interiors import Evaluate, Interior
 
 
 class MediaTables(BufferSet):
@@ -72,7 +66,7 @@ def _medium(interior: Interior, evaluate: Evaluate) -> tuple[np.void, np.ndarray
     for function, part in zip(functions, interior.scattering, strict=True):
         function["scattering"] = np.maximum(evaluate(part.coefficient)[0, 0], 0.0)
         function["kind"] = part.kind
-        function["parameters"] = part.parameters
+        function["parameters"] = part.parameters(evaluate)
     record["scattering"] = functions["scattering"].sum(axis=0)
     record["function_count"] = len(functions)
     return record, functions

@@ -29,40 +29,6 @@ buffer PhotonDifferentials;
 writeonly buffer Photons;
 readonly buffer PhotonRange;
 
-// Sum over the phase functions of a path's media of what each scatters of the flux.
-float choice_total(uint flags, vec3 flux) {
-    uint bits = medium_bits(), set = flags >> FIRST_MEDIUM;
-    float total = 0.0;
-    for (bool world = false; !world;) {
-        world = set == 0u;
-        Medium medium = media[next_medium(set, bits)];
-        for (uint k = 0u; k < medium.function_count; ++k)
-            total += largest(flux * phase_functions[medium.first_function + k].scattering);
-    }
-    return total;
-}
-
-// The phase function by which light goes on, chosen by what each scatters of the flux; scattering: its scattering
-// coefficient over the probability of the choice, 1/m. u is uniform in [0, 1), before as after.
-PhaseFunction choose_phase_function(uint flags, vec3 flux, inout float u, out vec3 scattering) {
-    uint bits = medium_bits(), set = flags >> FIRST_MEDIUM, chosen = 0u;
-    float total = choice_total(flags, flux), left = u * total, chosen_weight = 1.0;
-    for (bool world = false; !world && left >= 0.0;) {
-        world = set == 0u;
-        Medium medium = media[next_medium(set, bits)];
-        for (uint k = 0u; k < medium.function_count && left >= 0.0; ++k) {
-            float weight = largest(flux * phase_functions[medium.first_function + k].scattering);
-            if (!(weight > 0.0)) continue;
-            chosen = medium.first_function + k;
-            chosen_weight = weight;
-            u = min(left / weight, 0.99999994);
-            left -= weight;
-        }
-    }
-    scattering = phase_functions[chosen].scattering * (total / chosen_weight);
-    return phase_functions[chosen];
-}
-
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
     uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT));
     photons[photon_first + active_place()] =
@@ -79,18 +45,19 @@ vec3 turned(vec3 direction, float cosine, float angle) {
 
 // Sends the path on from where a medium has scattered it. Russian roulette keeps the flux of photons even.
 void sample_next_ray(uint index, PhotonPath path, Ray ray, vec3 position, vec3 weight, RandomSequence random) {
-    vec3 flux = path.flux * weight, scattering;
+    vec3 flux = path.flux * weight;
     float u = next_random(random);
-    PhaseFunction phase = choose_phase_function(path.flags, flux, u, scattering);
-    flux *= scattering;
+    PhaseFunction phase = sample_path_phase_function(path.flags, flux, u);
+    flux *=
+        phase.scattering * (dot(flux, path_medium(path.flags).scattering) / max(dot(flux, phase.scattering), 1e-30));
     float survival = min(largest(flux) / largest(path.flux), 1.0);
-    vec2 v = next_random2(random);
+    float angle = 2.0 * PI * next_random(random);
     bool survives = next_random(random) < survival;
     if (bounces_of(path.depth) >= iteration.photon_bounces) {
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
         survives = false;
     }
-    vec3 direction = turned(ray.direction, sample_phase_function(phase, vec2(v.x, u)), 2.0 * PI * v.y);
+    vec3 direction = turned(ray.direction, sample_phase_function(phase, u), angle);
     const uint kept = PATH_MASK
                       ^ (PHOTON_INDIRECT | PHOTON_DIRECT | PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY
                          | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
