@@ -44,8 +44,9 @@ class Method:
 
     @property
     def name(self) -> str:
-        """Kind, thousands of photon paths, and radius."""
-        parameters = [f"{self.paths >> 10}k"] if self.paths else []
+        """Kind, photon paths (k: 1024), and radius."""
+        paths = f"{self.paths >> 10}k" if self.paths >= 1024 else str(self.paths)
+        parameters = [paths] if self.paths else []
         return ", ".join([self.kind, *parameters, *([f"r {self.radius:g}"] if self.radius else [])])
 
 
