@@ -140,8 +140,8 @@ def name(result: dict[str, object], single: bool) -> str:
 
 
 def table(results: list[dict[str, object]], seconds: list[float], single: bool, best_only: bool) -> str:
-    """Rows of methods, or of each kind's best ones; errors relative to those of paths in brackets."""
-    paths = next((r["errors"] for r in results if r["method"].kind == "path"), None)
+    """Rows of methods, or of each kind's best ones; in brackets the ratio to the least error of a column."""
+    least = np.min([result["errors"] for result in results], axis=0)
     if best_only:
         kinds: dict[tuple, dict] = {}
         for result in results:
@@ -154,10 +154,7 @@ def table(results: list[dict[str, object]], seconds: list[float], single: bool, 
     lines = [f"| estimator | {head} | squared bias | brightest | squared bias | iterations | {splatting} |"]
     lines.append("|---|" + "---:|" * (len(seconds) + 6))
     for result in results:
-        cells = [
-            f"{error:.2e}" + (f" ({error / other:.2f})" if paths else "")
-            for error, other in zip(result["errors"], paths or result["errors"], strict=True)
-        ]
+        cells = [f"{error:.2e} ({error / low:.1f})" for error, low in zip(result["errors"], least, strict=True)]
         figures = [f"{result[key]:.1e}" for key in ("bias", "bright", "bright_bias")]
         splats = [f"{result['per_pixel']:.1f}", f"{result['rate'] / 1e6:.1f}"] if result["per_pixel"] else ["", ""]
         lines.append(
