@@ -28,6 +28,8 @@ Record(
     buckets="uint",
     first_candidate="uint",
     candidates="uint",
+    draws_beams="uint",
+    least_free_path="float",
     **SUM_PARAMETERS,
 )
 StorageBlock("MediumPhotons", "uint medium_photon_count; uint medium_photons[];")
@@ -96,8 +98,19 @@ class MediumPhotonMap(Stage):
             self._allocate.run(buckets, blocks, {"count": buckets})
             self._place.run(self.photon_count, blocks, self._cells)
 
-    def gather(self, context: StageContext, importons: Importons, sums: SplatSums, band: Band, segment: int) -> None:
-        """Add the light that media scatter toward the camera along the rays of a segment, but for direct light."""
+    def gather(
+        self,
+        context: StageContext,
+        importons: Importons,
+        sums: SplatSums,
+        band: Band,
+        segment: int,
+        beams_from: float | None,
+    ) -> None:
+        """Add the light that media scatter toward the camera along the rays of a segment, but for direct light.
+
+        beams_from: mean free path, meters, from which beams bring that light to straight rays; None where they do not.
+        """
         if not self.photon_count:
             return
         with context.timers.stage("gathering in media"):
@@ -113,6 +126,8 @@ class MediumPhotonMap(Stage):
                         **self._cells,
                         "first_candidate": first,
                         "candidates": _CANDIDATES,
+                        "draws_beams": beams_from is not None,
+                        "least_free_path": beams_from or 0.0,
                         **sums.parameters,
                     },
                 )

@@ -3,7 +3,7 @@
 // lint: MEDIA=1
 // Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
 // media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
-// the surface where they begin.
+// the surface where they begin, and straight camera rays in thin media to photon beams.
 
 layout(local_size_x = 64) in;
 
@@ -24,6 +24,8 @@ readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
+#include "media/thin_media.glsl"
+#include "media/straight_paths.glsl"
 #include "density_estimation/photon_grid/cells.glsl"
 readonly buffer Rays;
 readonly buffer CameraPaths;
@@ -83,6 +85,9 @@ void main() {
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
     MediumCoefficients medium = path_medium(path.flags);
     if (!(largest(medium.scattering) > 0.0)) return;
+    if (parameters.draws_beams != 0u && is_straight(path.flags)
+        && is_thin(medium.absorption + medium.scattering, parameters.least_free_path))
+        return;
     GatherPoint point = gather_point(index, path, ray, medium);
     float radius = parameters.radius;
     ivec3 low = cell_of(point.position - radius, parameters.side);

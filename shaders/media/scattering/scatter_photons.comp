@@ -23,18 +23,37 @@ readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
+#include "media/thin_media.glsl"
 readonly buffer Hits;
 buffer Rays;
 buffer PhotonPaths;
 buffer PhotonDifferentials;
 writeonly buffer Photons;
 readonly buffer PhotonRange;
+#include <PhotonBeam>
+buffer PhotonBeams;
 
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
     uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT));
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
                path.depth, path.medium_vertices | PHOTON_IN_MEDIUM, 0u);
+}
+
+// Whether shadow rays bring the light of a path that comes straight from its light.
+bool is_for_shadow_rays(PhotonPath path) { return iteration.next_event != 0u && (path.flags & PHOTON_DIRECT) != 0u; }
+
+// The way of the photon becomes a beam with a probability, which is larger for caustics.
+void store_beam(uint index, PhotonPath path, Ray ray, vec3 extinction, float extent, float u) {
+    if (is_for_shadow_rays(path) || !is_thin(extinction, parameters.least_free_path)) return;
+    bool caustic = (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
+    float probability = min(parameters.beam_probability * (caustic ? 4.0 : 1.0), 1.0);
+    if (u >= probability) return;
+    uint flags = path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT);
+    photon_beams[atomicAdd(beam_count, 1u)] =
+        PhotonBeam(ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
+                   path.flux / probability, flags, index | parameters.segment << PHOTON_SEGMENT_SHIFT, path.depth,
+                   path.medium_vertices, 0u);
 }
 
 vec3 turned(vec3 direction, float cosine, float angle) {
@@ -89,7 +108,9 @@ void main() {
     float far = escapes ? INFINITY_DISTANCE : hits[index].distance;
     RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_MEDIA, parameters.segment, index);
     FreeFlight flight = sample_free_flight(extinction, far, next_random2(random));
-    if (!(flight.pdf > 0.0)) {
+    bool passes = !(flight.pdf > 0.0);
+    store_beam(index, path, ray, extinction, passes ? far : flight.distance, next_random(random));
+    if (passes) {
         // Surfaces weaken the flux by the transmittance, but nothing weakens what escapes.
         vec3 weight = vec3(1.0 / max(flight.passing, 1e-30));
         if (escapes) weight *= exp(-extinction * far);
