@@ -2,7 +2,8 @@
 """Node graphs of volumes, taken apart into the coefficients and the phase functions of a medium."""
 
 import dataclasses
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -16,26 +17,27 @@ from .emitted import is_positive, light_variation, reachable
 Evaluate = Callable[[NodeGraph], np.ndarray]
 """Gives the (height, width, 3) float32 "emission" of a node graph."""
 
-_ABSORPTION: dict[str, tuple[tuple[str, ...], ...]] = {
+_Contributions = dict[str, tuple[tuple[str, ...], ...]]
+"""Kinds of nodes that contribute to a coefficient, and sets of inputs: the node contributes if all inputs of a set are
+positive."""
+_ABSORPTION: _Contributions = {
     "volume_absorption": (("density",),),
     "volume_coefficients": (("absorption_coefficients",),),
     "volume_principled": (("density",),),
 }
-_SCATTERING = {
+_SCATTERING: _Contributions = {
     "volume_scatter": (("density", "color"),),
     "volume_coefficients": (("scatter_coefficients",),),
     "volume_principled": (("density", "color"),),
 }
-_EMISSION = {
+_EMISSION: _Contributions = {
     "emission": (("strength",),),
     "background": (("strength",),),
     "volume_coefficients": (("emission_coefficients",),),
     "volume_principled": (("emission_strength", "emission_color"), ("blackbody_intensity", "blackbody_tint")),
 }
-"""Kinds of nodes that contribute to a coefficient, and sets of inputs: the node contributes if all inputs of a set are
-positive."""
 _COEFFICIENTS = {"ABSORPTION": _ABSORPTION, "SCATTERING": _SCATTERING, "EMISSION": _EMISSION}
-"""The same by the option "coefficient" of a node."""
+"""Contributions by the option "coefficient" of a node."""
 _COMBINING = ("mix_shader", "add_shader")
 
 
@@ -124,7 +126,7 @@ def _contributing(graph: NodeGraph, coefficient: str) -> set[int]:
     }
 
 
-def _alone(graph: NodeGraph, contributing: Collection[int], options: dict[str, object]) -> NodeGraph:
+def _alone(graph: NodeGraph, contributing: Collection[int], options: Mapping[str, object]) -> NodeGraph:
     """The graph with nothing but some of its shaders, which have these options as far as their kinds know them."""
 
     def links_to_others(value: object) -> bool:
@@ -146,10 +148,11 @@ def _alone(graph: NodeGraph, contributing: Collection[int], options: dict[str, o
 
 def _phase_inputs(graph: NodeGraph, node: ShaderNode, model: PhaseModel) -> tuple[float, ...] | NodeGraph:
     declared = KINDS[node.kind].inputs
-    values = [node.inputs.get(name, declared[name][1]) for name in model.inputs]
+    values: list[Any] = [node.inputs.get(name, declared[name][1]) for name in model.inputs]
     if not any(isinstance(value, Link) for value in values):
         return tuple(float(np.mean(value)) for value in values)
     asking = dataclasses.replace(graph, nodes=list(graph.nodes))
-    given = asking.add("combine_xyz", "vector", name=node.name, **dict(zip("xyz", values, strict=False)))
+    x, y, z = (*values, 0.0, 0.0)[:3]
+    given = asking.add("combine_xyz", "vector", name=node.name, x=x, y=y, z=z)
     asking.surface = asking.add("emission", "emission", name=node.name, color=given)
     return asking
