@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from support.phase_values import values_and_samples
+from support.media.phase_values import values_and_samples
 
 from rppm_addon.materials import phase_functions as phases
 from rppm_addon.materials.records import PhaseFunctionKind

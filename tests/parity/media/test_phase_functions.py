@@ -11,7 +11,7 @@ import math
 import bpy
 import numpy as np
 import pytest
-from support.phase_values import values_and_samples
+from support.media.phase_values import values_and_samples
 
 from rppm_addon.materials.phase_functions import MODELS
 
