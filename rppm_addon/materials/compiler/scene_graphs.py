@@ -94,6 +94,8 @@ class SceneGraphs:
             owners += [(owner, graph) for graph in interior.graphs]
             if interior.varies:
                 self._scene.warn(f"{owner} varies from place to place, which is not rendered; one value stands for all")
+            if interior.phases_vary:
+                self._scene.warn(f"{owner} has a phase function that varies from place to place; one stands for all")
         for owner, graph in owners:
             if graph is not None:
                 yield UnattachedGraph(graph, owner, self._compile_light(graph, owner))

@@ -3,6 +3,7 @@
 
 import dataclasses
 from collections.abc import Callable, Collection, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -16,26 +17,44 @@ from .emitted import is_positive, light_variation, reachable
 Evaluate = Callable[[NodeGraph], np.ndarray]
 """Gives the (height, width, 3) float32 "emission" of a node graph."""
 
-_ABSORPTION: dict[str, tuple[tuple[str, ...], ...]] = {
+_Contributions = dict[str, tuple[tuple[str, ...], ...]]
+"""Kinds of nodes that contribute to a coefficient, and sets of inputs: the node contributes if all inputs of a set are
+positive."""
+_ABSORPTION: _Contributions = {
     "volume_absorption": (("density",),),
     "volume_coefficients": (("absorption_coefficients",),),
     "volume_principled": (("density",),),
 }
-_SCATTERING = {
+_SCATTERING: _Contributions = {
     "volume_scatter": (("density", "color"),),
     "volume_coefficients": (("scatter_coefficients",),),
     "volume_principled": (("density", "color"),),
 }
-_EMISSION = {
+_EMISSION: _Contributions = {
     "emission": (("strength",),),
     "background": (("strength",),),
     "volume_coefficients": (("emission_coefficients",),),
     "volume_principled": (("emission_strength", "emission_color"), ("blackbody_intensity", "blackbody_tint")),
 }
-"""Kinds of nodes that contribute to a coefficient, and sets of inputs: the node contributes if all inputs of a set are
-positive."""
 _COEFFICIENTS = {"ABSORPTION": _ABSORPTION, "SCATTERING": _SCATTERING, "EMISSION": _EMISSION}
-"""The same by the option "coefficient" of a node."""
+"""Contributions by the option "coefficient" of a node."""
+_DENSITY = frozenset({"density", "density_grid"})
+_COLOR = frozenset({"color", "color_grid"})
+_READ: dict[tuple[str, str], frozenset[str]] = {
+    ("volume_scatter", "SCATTERING"): _DENSITY | _COLOR | {"diameter"},
+    ("volume_coefficients", "ABSORPTION"): frozenset({"absorption_coefficients"}),
+    ("volume_coefficients", "SCATTERING"): frozenset({"scatter_coefficients", "diameter"}),
+    ("volume_coefficients", "EMISSION"): frozenset({"emission_coefficients"}),
+    ("volume_principled", "ABSORPTION"): _DENSITY | _COLOR | {"absorption_color"},
+    ("volume_principled", "SCATTERING"): _DENSITY | _COLOR,
+    ("volume_principled", "EMISSION"): frozenset(
+        {
+            "emission_strength", "emission_color", "blackbody_intensity", "blackbody_tint", "temperature",
+            "temperature_grid",
+        }
+    ),
+}  # fmt: skip
+"""Inputs on which a coefficient of a kind of node depends; the diameter of droplets for Mie's phase function only."""
 _COMBINING = ("mix_shader", "add_shader")
 
 
@@ -85,6 +104,11 @@ class Interior:
         """The graphs of all coefficients, and of the inputs of phase functions."""
         return self.coefficients + [part.inputs for part in self.scattering if isinstance(part.inputs, NodeGraph)]
 
+    @property
+    def phases_vary(self) -> bool:
+        """Whether the inputs of phase functions may depend on the place."""
+        return any(isinstance(part.inputs, NodeGraph) and light_variation(part.inputs) for part in self.scattering)
+
     @classmethod
     def of(cls, graph: NodeGraph | None) -> "Interior":
         """The medium that a graph of a volume makes."""
@@ -99,7 +123,7 @@ class Interior:
 def _sum(graph: NodeGraph, coefficient: str) -> NodeGraph | None:
     """The graph of a coefficient to which all nodes contribute; None where none does."""
     nodes = _contributing(graph, coefficient)
-    return _alone(graph, nodes, {"coefficient": coefficient}) if nodes else None
+    return _alone(graph, nodes, coefficient) if nodes else None
 
 
 def _scattering(graph: NodeGraph) -> Iterator[Scattering]:
@@ -107,8 +131,8 @@ def _scattering(graph: NodeGraph) -> Iterator[Scattering]:
     for index in sorted(_contributing(graph, "SCATTERING")):
         node = graph.nodes[index]
         for model in MODELS[str(node.options.get("phase", PHASES[0]))]:
-            options = {"coefficient": "SCATTERING", "mie_lobe": model.mie_lobe}
-            yield Scattering(_alone(graph, {index}, options), model, _phase_inputs(graph, node, model))
+            coefficient = _alone(graph, {index}, "SCATTERING", model)
+            yield Scattering(coefficient, model, _phase_inputs(graph, node, model))
 
 
 def _contributing(graph: NodeGraph, coefficient: str) -> set[int]:
@@ -124,8 +148,12 @@ def _contributing(graph: NodeGraph, coefficient: str) -> set[int]:
     }
 
 
-def _alone(graph: NodeGraph, contributing: Collection[int], options: dict[str, object]) -> NodeGraph:
-    """The graph with nothing but some of its shaders, which have these options as far as their kinds know them."""
+def _alone(
+    graph: NodeGraph, contributing: Collection[int], coefficient: str, model: PhaseModel = HENYEY_GREENSTEIN
+) -> NodeGraph:
+    """The graph with nothing but some of its shaders in effect, which give a coefficient; model: of the phase function
+    by which they scatter."""
+    options = {"coefficient": coefficient, "mie_lobe": model.mie_lobe}
 
     def links_to_others(value: object) -> bool:
         if not isinstance(value, Link):
@@ -137,19 +165,29 @@ def _alone(graph: NodeGraph, contributing: Collection[int], options: dict[str, o
     for index, node in enumerate(nodes):
         if index in contributing:
             known = {name: value for name, value in options.items() if name in KINDS[node.kind].options}
-            nodes[index] = dataclasses.replace(node, options=node.options | known)
+            nodes[index] = dataclasses.replace(node, options=node.options | known, inputs=_read(node, coefficient))
         elif node.kind in _COMBINING:
             inputs = {name: value for name, value in node.inputs.items() if not links_to_others(value)}
             nodes[index] = dataclasses.replace(node, inputs=inputs)
     return dataclasses.replace(graph, nodes=nodes)
 
 
+def _read(node: ShaderNode, coefficient: str) -> dict[str, object]:
+    """The inputs of a node on which a coefficient depends: others would make it seem to vary."""
+    read = _READ.get((node.kind, coefficient))
+    if read is None:
+        return node.inputs
+    unread = frozenset() if node.options.get("phase") == "MIE" else {"diameter"}
+    return {name: value for name, value in node.inputs.items() if name in read - unread}
+
+
 def _phase_inputs(graph: NodeGraph, node: ShaderNode, model: PhaseModel) -> tuple[float, ...] | NodeGraph:
     declared = KINDS[node.kind].inputs
-    values = [node.inputs.get(name, declared[name][1]) for name in model.inputs]
+    values: list[Any] = [node.inputs.get(name, declared[name][1]) for name in model.inputs]
     if not any(isinstance(value, Link) for value in values):
         return tuple(float(np.mean(value)) for value in values)
     asking = dataclasses.replace(graph, nodes=list(graph.nodes))
-    given = asking.add("combine_xyz", "vector", name=node.name, **dict(zip("xyz", values, strict=False)))
+    x, y, z = (*values, 0.0, 0.0)[:3]
+    given = asking.add("combine_xyz", "vector", name=node.name, x=x, y=y, z=z)
     asking.surface = asking.add("emission", "emission", name=node.name, color=given)
     return asking
