@@ -9,7 +9,7 @@ from ...scene.node_graphs import NodeGraph
 from ...scene.passes import aov_passes
 from ...scene.scene import Scene
 from ..traits.emitted import Emits, emits
-from ..traits.interiors import Interior
+from ..traits.interiors import Interior, Variation
 from .compiled_graph import NEUTRAL_TEXT, CompiledGraph, GraphError, NodeRayCounts
 from .compiler import compile_displacement, compile_graph
 
@@ -92,8 +92,8 @@ class SceneGraphs:
         ]
         for owner, interior in volumes:
             owners += [(owner, graph) for graph in interior.graphs]
-            if interior.varies:
-                self._scene.warn(f"{owner} varies from place to place, which is not rendered; one value stands for all")
+        if self.world_interior.variation >= Variation.PLACE_IN_OBJECT:
+            self._scene.warn("The volume of the world varies from place to place; it is rendered around the scene only")
         for owner, graph in owners:
             if graph is not None:
                 yield UnattachedGraph(graph, owner, self._compile_light(graph, owner))

@@ -2,18 +2,38 @@
 """Node graphs of volumes, taken apart into what they say of a medium."""
 
 import dataclasses
+import enum
 from collections.abc import Collection
 
-from ...scene.node_graphs import NodeGraph
+from ...scene.node_graphs import Link, NodeGraph
 from ..nodes import KINDS
 from ..records import PhaseFunctionKind
-from .emitted import is_positive, light_variation, reachable
+from .emitted import is_positive, reachable
 
 _ABSORBING = {"volume_absorption": "density"}
 _EMITTING = {"emission": "strength", "background": "strength"}
 """Kinds of nodes, and the input that none of it comes from when it is 0."""
 _SURFACES = {"bsdf_principled": "emission_strength"}
 """Likewise: surfaces say nothing of a volume, as in Cycles."""
+
+
+_CONSTANT = {"light_path", "uvmap", "random_per_island", "tangent", "strand_value", "hair_info", "round_size"}
+"""Nodes about surfaces, which give the same everywhere in a volume."""
+_BY_OBJECT = {"object_info", "particle_info"}
+_BY_PLACE_IN_OBJECT = {("tex_coord", "object"), ("generated_coord", "generated")}
+"""Kinds of nodes, and outputs of theirs, that know no other place than that in the object."""
+
+
+class Variation(enum.IntEnum):
+    """Variables on which the coefficients of a medium depend; each includes those before it."""
+
+    NOTHING = 0
+    OBJECT = 1
+    """The object that the medium is in."""
+    PLACE_IN_OBJECT = 2
+    """The place in the space of the object, or an attribute there."""
+    PLACE = 3
+    """The place in the world."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,8 +56,12 @@ class Interior:
     emission: NodeGraph | None = None
     """In W/(m^3 sr)."""
     scattering: tuple[Scattering, ...] = ()
-    varies: bool = False
-    """True where the coefficients may depend on the place."""
+    variation: Variation = Variation.NOTHING
+
+    @property
+    def varies(self) -> bool:
+        """Whether the coefficients may differ between places or objects."""
+        return self.variation > Variation.NOTHING
 
     @property
     def graphs(self) -> list[NodeGraph]:
@@ -53,7 +77,29 @@ class Interior:
         if any(node.kind not in KINDS for node in graph.nodes):
             return cls(graph)  # which whoever compiles it reports
         absorption, emission = _part(graph, _ABSORBING), _part(graph, _EMITTING)
-        return cls(absorption, emission, varies=bool(absorption or emission) and bool(light_variation(graph)))
+        return cls(absorption, emission, variation=variation(graph) if absorption or emission else Variation.NOTHING)
+
+
+def variation(graph: NodeGraph) -> Variation:
+    """Return the variables on which the volume of a graph depends."""
+    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
+    asked = {
+        (graph.nodes[value.node].kind, value.output)
+        for node in nodes
+        for value in node.inputs.values()
+        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
+    }
+    return max((_variation_of(kind, output) for kind, output in asked), default=Variation.NOTHING)
+
+
+def _variation_of(kind: str, output: str) -> Variation:
+    if kind in _CONSTANT:
+        return Variation.NOTHING
+    if kind in _BY_OBJECT:
+        return Variation.OBJECT
+    if kind in ("attribute", "tex_image") or (kind, output) in _BY_PLACE_IN_OBJECT:
+        return Variation.PLACE_IN_OBJECT
+    return Variation.PLACE
 
 
 def _part(graph: NodeGraph, kinds: dict[str, str]) -> NodeGraph | None:
