@@ -19,8 +19,10 @@ VOXELS_ALONG = 128
 """Voxels along the longest side of a grid whose object says nothing of its own."""
 MAX_VOXELS = 1 << 24
 """Voxels of all grids that differ, with those of empty bricks."""
-_MAX_WORDS = 1 << 28
-"""Words of all grids on the device."""
+MAX_GRID_BYTES = 1 << 30
+"""Bytes of all grids on the device, at most."""
+_FEWEST_VOXELS = 8
+"""Voxels of a grid, at least."""
 
 Evaluate = Callable[[NodeGraph, Lattice, int, np.ndarray], np.ndarray]
 """Gives the (bricks, BRICK_VOXELS, 3) float32 coefficient of a graph at a lattice of an instance with a matrix."""
@@ -105,18 +107,22 @@ class MediumGrids(BufferSet):
         Where the voxels of all grids would not fit, they are larger, with a warning in scene.warnings.
         """
         most = MAX_VOXELS // max(len({medium.key for medium in media}), 1)
-        limit = min(self._voxels.limit // 4, _MAX_WORDS)
-        while True:
-            self._bake_all(media, most, evaluate)
-            count = sum(len(baked.grid.words) for baked in self._baked.values())
-            if count <= limit:
-                break
+        limit = min(self._voxels.limit, MAX_GRID_BYTES) // 4
+        self._bake_all(media, most, evaluate)
+        if self._word_count > limit:
             scene.warn(
-                f"The grids of volumes need {count / 2**18:.0f} MiB, but {limit / 2**18:.0f} MiB fit; their voxels are "
-                f"made larger: {self.remedy} for finer ones"
+                f"The grids of volumes need {self._word_count / 2**18:.1f} MiB, but {limit / 2**18:.1f} MiB fit; their "
+                f"voxels are made larger: {self.remedy} for finer ones"
             )
-            most = int(most * min(0.5, 0.9 * limit / count))
+        while self._word_count > limit and most > _FEWEST_VOXELS:
+            most = min(most, max(int(np.prod(baked.lattice.voxels)) for baked in self._baked.values()))
+            most = int(most * min(0.7, 0.9 * limit / self._word_count))
+            self._bake_all(media, most, evaluate)
         return self._upload(media)
+
+    @property
+    def _word_count(self) -> int:
+        return sum(len(baked.grid.words) for baked in self._baked.values())
 
     def _bake_all(self, media: list[PlacedMedium], most: int, evaluate: Evaluate) -> None:
         before, self._baked = self._baked if most == self._most else {}, {}

@@ -123,7 +123,7 @@ vec3 span_extinction(uint medium, GridSpan span) {
 // The coefficients of a grid at a distance along a ray.
 MediumCoefficients grid_coefficients(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
     GridRay ray = grid_ray(medium, origin + distance * direction, direction, 0.0, offset);
-    if (ray.start > 0.0) return MediumCoefficients(vec3(0.0), vec3(0.0), vec3(0.0));
+    if (ray.start > 0.0 || ray.end < 0.0) return MediumCoefficients(vec3(0.0), vec3(0.0), vec3(0.0));
     return span_coefficients(
         medium, GridSpan(brick_place(medium, uvec3(ray.cell) / BRICK_SIDE), voxel_number(uvec3(ray.cell)), 0.0));
 }
