@@ -34,6 +34,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
+            stages.direct_light.add_in_media(context, importons, band, iteration, segment)
+            stages.medium_photons.gather(context, importons, estimator.sums, band, segment)
             stages.shadow_catcher.cast(context, importons, band, segment)
             stages.direct_light.add(context, importons, band, iteration, segment)
             yield
@@ -64,6 +66,7 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
     for segment in range(context.settings.photon_segments):
         if segment > 0 and not photons.trace(context, segment):
             break
+        stages.medium_scattering.scatter_photons(context, photons, segment)
         photons.resolve(context, iteration, segment)
         photons.scatter(context, stages.subsurface, iteration, segment)
         yield
@@ -75,6 +78,7 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     listed = stages.photons.list_stored(context, estimator.photon_list, iteration)
     radii = learning.radii_for(iteration, listed)
     context.iteration_block.write_radii(radii)
+    stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume(context))
     estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
     return radii
 

@@ -35,6 +35,8 @@ from .film.light_passes import LightPasses
 from .film.noise_estimate import NoiseEstimate
 from .film.photon_noise import PhotonNoise
 from .media.media import Media
+from .media.photon_map import MediumPhotonMap
+from .media.scattering import MediumScattering
 from .photons.photons import Photons
 
 
@@ -59,6 +61,8 @@ class StageSet(BufferSet):
     shadow_catcher = Part(ShadowCatcher)
     subsurface = Part(Subsurface)
     media = Part(Media)
+    medium_scattering = Part(MediumScattering)
+    medium_photons = Part(MediumPhotonMap)
     film = Part(Film)
     light_passes = Part(LightPasses)
     light_groups = Part(LightGroups)

@@ -1,23 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Participating media of a scene on the device: the volumes inside surfaces, and the world's."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ..gl.context.context import Context
 from ..gl.programs.programs import ProgramLibrary
-from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
 from .medium_grids import Evaluate as EvaluateVoxels
 from .medium_grids import MediumGrids, PlacedMedium
 from .medium_places import MediumPlaces
 from .records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
-from .traits.interiors import Interior, Variation
+from .traits.interiors import Evaluate, Interior, Variation
 
-Evaluate = Callable[[NodeGraph], np.ndarray]
-"""Gives the (height, width, 3) float32 coefficient of a node graph, 1/m or W/(m^3 sr)."""
 _Medium = tuple[np.void, np.ndarray]
 """A MEDIUM record, and its (n,) PHASE_FUNCTION records."""
 
@@ -98,7 +95,7 @@ def _medium(interior: Interior, evaluate: Evaluate) -> _Medium:
     for function, part in zip(functions, interior.scattering, strict=True):
         function["scattering"] = np.maximum(evaluate(part.coefficient)[0, 0], 0.0)
         function["kind"] = part.kind
-        function["parameters"] = part.parameters
+        function["parameters"] = part.parameters(evaluate)
     record["scattering"] = functions["scattering"].sum(axis=0)
     record["function_count"] = len(functions)
     return record, functions

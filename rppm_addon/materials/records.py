@@ -50,6 +50,13 @@ class PhaseFunctionKind(enum.IntEnum):
 
     HENYEY_GREENSTEIN = 0
     """Parameter: the anisotropy g."""
+    FOURNIER_FORAND = 1
+    """Parameters: the refractive index n, the exponent nu, and the factor of the term by cos^2 (Fournier and Jonasz
+    1999)."""
+    DRAINE = 2
+    """Parameters: the anisotropy g, and alpha (Draine 2003)."""
+    RAYLEIGH = 3
+    """No parameter."""
 
 
 PHASE_FUNCTION = Record("PhaseFunction", scattering="vec3", kind="uint", parameters="vec4")

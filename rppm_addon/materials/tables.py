@@ -209,9 +209,7 @@ def _material_records(materials: list[Material], graphs: SceneGraphs, layout: Co
         record["program"] = number[compiled.text]
         record["first_constant"] = layout.add(material.graph, compiled)
         record["opaque_shadow"] = not material.transparent_shadow
-        record["passes_shadow_rays"] = (
-            material.transparent_shadow and material.interior is None and passes_shadow_rays(material.graph)
-        )
+        record["passes_shadow_rays"] = material.transparent_shadow and passes_shadow_rays(material.graph)
         record["pass_index"] = material.pass_index
         record["depends_on_view"] = depends_on_view(material.graph)
     return records

@@ -9,13 +9,13 @@ from .node_graphs import NodeGraph
 
 @dataclass
 class Material:
-    """A surface, and the homogeneous medium that it encloses."""
+    """A surface, and the participating medium that it encloses."""
 
     name: str
     graph: NodeGraph = field(default_factory=NodeGraph)
     interior: NodeGraph | None = None
-    """Nodes of the homogeneous medium that the surface encloses: volume_absorption gives the absorption coefficient,
-    1/m, and emission the radiance by length, W/(m^3 sr)."""
+    """Nodes of the medium that the surface encloses (rppm_addon/materials/nodes/volumes.py): what it absorbs and
+    scatters, 1/m, and the radiance that it emits by length, W/(m^3 sr)."""
     transparent_shadow: bool = True
     """Whether light of light objects and meshes passes where the surface is transparent; the world's always does."""
     pass_index: int = 0

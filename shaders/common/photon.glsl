@@ -4,6 +4,7 @@
 #include <PhotonFlags>
 #include <PhotonHistory>
 #include <PhotonNumbers>
+#include <MediumScattering>
 
 uint photon_path_of(uint word) { return word & ((1u << PHOTON_SEGMENT_SHIFT) - 1u); }
 

@@ -1,5 +1,8 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Continues shadow rays behind a transparent surface, weighted by its transmittance. The transparent surfaces that the
 // camera path has crossed count towards the limit as well, as in Cycles.
 
@@ -20,6 +23,13 @@ readonly buffer Closures;
 buffer ShadowRays;
 buffer Contributions;
 readonly buffer CameraPaths;
+#ifdef MEDIA
+readonly buffer Materials;
+readonly buffer Media;
+buffer ShadowMedia;
+#include "common/bsdf/closure.glsl"
+#include "materials/medium.glsl"
+#endif
 
 void main() {
     uint index = active_path();
@@ -27,6 +37,11 @@ void main() {
     uint surfaces = transparents_of(camera_paths[index].depth) + parameters.surface_count;
     vec3 transmittance = surfaces < iteration.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
     Ray ray = shadow_rays[index];
+#ifdef MEDIA
+    uint media_flags = shadow_media[index];
+    transmittance *= segment_transmittance(media_flags, ray.origin, ray.direction, closures[index].distance);
+    shadow_media[index] = cross_surface(media_flags, closures[index].material, closure_backfacing(closures[index]));
+#endif
     contributions[index].rgb *= transmittance;
     shadow_rays[index].maximum_distance = 0.0;
     if (!(largest(transmittance) > 0.0)) return;

@@ -33,6 +33,7 @@ writeonly buffer Contributions;
 readonly buffer RadiusFactors;
 #include "camera_paths/importons/radius.glsl"
 writeonly buffer LightSplits;
+writeonly buffer ShadowMedia;
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
 struct Parts {
@@ -157,13 +158,21 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
         uint emissive;
         Hit hit = intersect_emitters(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
-        reflected *= segment_transmittance(flags, closure.position, sampled.direction, hit.distance);
+        if (parameters.crosses_media == 0u)
+            reflected *= segment_transmittance(flags, closure.position, sampled.direction, hit.distance);
         radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
         add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
                       Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
     }
     candidates.chosen.radiance *= candidates.weights;
     return candidates.chosen;
+}
+
+// Media that the shadow ray of a path begins in, by the flags of a path that is in them.
+void set_shadow_media(uint index, uint flags) {
+#ifdef MEDIA
+    shadow_media[index] = flags;
+#endif
 }
 
 // Of photons that bring the environment's direct light.
@@ -214,7 +223,10 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     parts = Parts(fraction_of(parts.glossy, scattered), fraction_of(parts.transmission, scattered));
     uint beyond = path.flags;
     if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
-    vec3 transmittance = segment_transmittance(beyond, closure.position, sampled.direction, sampled.distance);
+    vec3 transmittance = vec3(1.0);
+    if (parameters.crosses_media == 0u)
+        transmittance = segment_transmittance(beyond, closure.position, sampled.direction, sampled.distance);
+    set_shadow_media(index, beyond);
     return Arriving(throughput * transmittance * scattered * sampled.weight / choice.probability, sampled.direction,
                     sampled.distance, choice.light, sampled.triangle);
 }
@@ -269,6 +281,7 @@ void main() {
         takes_reflected = reservoir_accept(reflected_weight, total, u);
         if (takes_reflected) {
             arriving = reflected;
+            set_shadow_media(index, flags);
             parts = Parts(vec3(1.0), vec3(0.0));
         }
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);

@@ -37,6 +37,10 @@ uint light_set_at(uint triangle) {
 }
 
 float facing(LitPoint point, vec3 direction) {
+#ifdef MEDIA
+    // In a medium there is no surface, and light from all sides is scattered.
+    if (point.normal == vec3(0.0)) return 1.0;
+#endif
     float cosine = dot(point.normal, direction);
     return point.both_sides ? abs(cosine) : cosine;
 }

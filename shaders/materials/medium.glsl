@@ -15,6 +15,13 @@ struct MediumCoefficients {
     vec3 emission;
 };
 
+// A place on the ray of a path.
+struct PlaceOnRay {
+    vec3 origin;
+    vec3 direction;
+    float distance;  // meters
+};
+
 // Length of a segment weighted by how much of the light from each of its places reaches its beginning, meters. The
 // series serves where the formula cancels.
 vec3 seen_length(vec3 extinction, float distance) {
@@ -81,14 +88,13 @@ bool next_grid(inout uint set, inout bool world, out uint medium) {
     return found;
 }
 
-// Coefficients of all media that a path is in at a distance along its ray.
-MediumCoefficients path_medium(uint flags, vec3 origin, vec3 direction, float distance) {
+// Coefficients of all media that a path is in at a place on its ray.
+MediumCoefficients path_medium(uint flags, PlaceOnRay at) {
     MediumCoefficients sum = even_medium(flags);
-    vec3 offset = lookup_offset(origin, direction);
     bool world = true;
     uint medium;
     for (uint set = flags >> FIRST_MEDIUM; next_grid(set, world, medium);) {
-        MediumCoefficients grid = grid_coefficients(medium, origin, direction, distance, offset);
+        MediumCoefficients grid = grid_coefficients(medium, at);
         sum.absorption += grid.absorption;
         sum.scattering += grid.scattering;
         sum.emission += grid.emission;
@@ -113,10 +119,10 @@ vec3 segment_thickness(uint flags, vec3 origin, vec3 direction, float distance) 
 }
 
 // The distance along a segment at which a path collides with its media, INFINITY_DISTANCE where it does not: where
-// the mean of the channels' optical thickness comes to that of a random number u in [0, 1). Of several media, each has
-// a free flight of its own, of which the shortest is distributed as that of all together.
-float segment_free_flight(uint flags, vec3 origin, vec3 direction, float distance, float u) {
-    float extinction = dot(even_extinction(flags), vec3(1.0 / 3.0)), thickness = -log(1.0 - u);
+// the optical thickness of a channel comes to that of a random number u in [0, 1). Of several media, each has a free
+// flight of its own, of which the shortest is distributed as that of all together.
+float segment_free_flight(uint flags, vec3 origin, vec3 direction, float distance, int channel, float u) {
+    float extinction = even_extinction(flags)[channel], thickness = -log(max(1.0 - u, 1e-30));
     float flight = extinction > 0.0 ? thickness / extinction : INFINITY_DISTANCE;
     if (flight > distance) flight = INFINITY_DISTANCE;
     vec3 offset = lookup_offset(origin, direction);
@@ -125,7 +131,8 @@ float segment_free_flight(uint flags, vec3 origin, vec3 direction, float distanc
     for (uint set = flags >> FIRST_MEDIUM; next_grid(set, world, medium); ++number) {
         if (extinction > 0.0 || number > 0u)
             thickness = -log(1.0 - unit_float(pcg4d(uvec4(floatBitsToUint(u), number, iteration.number, medium)).x));
-        flight = min(flight, grid_free_flight(medium, origin, direction, min(flight, distance), offset, thickness));
+        flight =
+            min(flight, grid_free_flight(medium, origin, direction, min(flight, distance), offset, channel, thickness));
     }
     return flight;
 }
@@ -149,8 +156,8 @@ vec3 segment_emission(uint flags, vec3 origin, vec3 direction, float distance) {
     return emitted + even.emission * mix(seen, vec3(0.0), greaterThan(seen, vec3(1e20)));
 }
 #else
-// Coefficients of all media that a path is in at a distance along its ray.
-MediumCoefficients path_medium(uint flags, vec3 origin, vec3 direction, float distance) { return even_medium(flags); }
+// Coefficients of all media that a path is in at a place on its ray.
+MediumCoefficients path_medium(uint flags, PlaceOnRay at) { return even_medium(flags); }
 
 // Optical thickness of all media that a path is in along a segment.
 vec3 segment_thickness(uint flags, vec3 origin, vec3 direction, float distance) {
@@ -170,6 +177,14 @@ vec3 segment_emission(uint flags, vec3 origin, vec3 direction, float distance) {
 // Fraction of the light of a segment that is neither absorbed nor scattered.
 vec3 segment_transmittance(uint flags, vec3 origin, vec3 direction, float distance) {
     return exp(-segment_thickness(flags, origin, direction, distance));
+}
+
+// Whether a medium of a path scatters light anywhere.
+bool path_may_scatter(uint flags) {
+    vec3 sum = media[0].scattering;
+    uint bits = medium_bits();
+    for (uint set = flags >> FIRST_MEDIUM; set != 0u;) sum += media[next_medium(set, bits)].scattering;
+    return max(sum.x, max(sum.y, sum.z)) > 0.0;
 }
 
 // The flags of a path after it has passed through a surface of a material, which it came to from behind or not.

@@ -120,9 +120,10 @@ vec3 span_extinction(uint medium, GridSpan span) {
            + voxel_coefficient(span, channels >> 8u & 0xffu, media[medium].scattering);
 }
 
-// The coefficients of a grid at a distance along a ray.
-MediumCoefficients grid_coefficients(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
-    GridRay ray = grid_ray(medium, origin + distance * direction, direction, 0.0, offset);
+// The coefficients of a grid at a place on a ray.
+MediumCoefficients grid_coefficients(uint medium, PlaceOnRay at) {
+    vec3 offset = lookup_offset(at.origin, at.direction), place = at.origin + at.distance * at.direction;
+    GridRay ray = grid_ray(medium, place, at.direction, 0.0, offset);
     if (ray.start > 0.0 || ray.end < 0.0) return MediumCoefficients(vec3(0.0), vec3(0.0), vec3(0.0));
     return span_coefficients(
         medium, GridSpan(brick_place(medium, uvec3(ray.cell) / BRICK_SIDE), voxel_number(uvec3(ray.cell)), 0.0));
@@ -137,14 +138,15 @@ vec3 grid_thickness(uint medium, vec3 origin, vec3 direction, float distance, ve
     return thickness;
 }
 
-// The distance along a ray at which the mean of the channels' optical thickness comes to a value, by exact inversion;
+// The distance along a ray at which the optical thickness of a channel comes to a value, by exact inversion;
 // INFINITY_DISTANCE where it does not.
-float grid_free_flight(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset, float thickness) {
+float grid_free_flight(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset, int channel,
+                       float thickness) {
     GridRay ray = grid_ray(medium, origin, direction, distance, offset);
     float gone = ray.start;
     GridSpan span;
     while (next_span(ray, span)) {
-        float extinction = dot(span_extinction(medium, span), vec3(1.0 / 3.0));
+        float extinction = span_extinction(medium, span)[channel];
         if (extinction * span.extent > thickness) return gone + thickness / extinction;
         thickness -= extinction * span.extent;
         gone += span.extent;

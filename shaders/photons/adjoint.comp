@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
+// lint: MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // Photons are weighted by the BSDF as a viewer sees it who looks back along their rays: the adjoint BSDF (Veach 1997,
@@ -21,6 +22,9 @@ readonly buffer PhotonRange;
 void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
+#ifdef MEDIA
+    if ((photon_paths[index].flags & PATH_SCATTERED_IN_MEDIUM) != 0u) return;
+#endif
     vec3 flux = photon_paths[index].flux, viewer = -rays[index].direction;
     if (!(largest(flux) > 0.0)) return;
     AdjointQuery query = adjoint_queries[index];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ray by which a photon path goes on. The includer includes photons/sample_bsdf.glsl before.
 
+#include "photons/scattered_flags.glsl"
+
 // Takes the parts out of a closure that a limit forbids: behind the last bounce all but transparency, and behind the
 // last transparent surface transparency. Returns whether any part is left.
 bool limit_bounces(inout Closure closure, uint depth) {
@@ -8,15 +10,6 @@ bool limit_bounces(inout Closure closure, uint depth) {
     if (bounces_of(depth) < iteration.photon_bounces) return true;
     closure.flags |= CLOSURE_KEEPS_LIGHT;
     return largest(closure.transparent) > 0.0;
-}
-
-// The flags of a path whose last scattering was diffuse or not: diffuse surfaces make caustics of light that other
-// lobes sent there.
-uint scattered_flags(uint path_flags, bool diffuse) {
-    const uint by_lobe = PHOTON_SCATTERED_BY_LOBE >> PHOTON_HISTORY_SHIFT;
-    if (!diffuse) return path_flags | by_lobe;
-    bool caustic = (path_flags & by_lobe) != 0u;
-    return (path_flags & ~by_lobe) | (caustic ? PHOTON_CAUSTIC >> PHOTON_HISTORY_SHIFT : 0u);
 }
 
 // Shading normals make scattering asymmetric; this is the factor for particles (Veach 1997, eq. 5.19). The weights of

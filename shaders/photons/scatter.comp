@@ -32,6 +32,9 @@ void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
     PhotonPath path = photon_paths[index];
+#ifdef MEDIA
+    if ((path.flags & PATH_SCATTERED_IN_MEDIUM) != 0u) return;
+#endif
     Ray ray = rays[index];
     // The path ends here unless it gets a next ray.
     rays[index].maximum_distance = 0.0;

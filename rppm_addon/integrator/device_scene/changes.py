@@ -45,7 +45,9 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
         materials=images
         or before.settings.aovs != after.settings.aovs
         or not same_members(before.materials, after.materials)
-        or not same_members([*graphs_before, before.world.graph], [*graphs, after.world.graph]),
+        or not same_members(
+            [*graphs_before, before.world.graph, before.world.volume], [*graphs, after.world.graph, after.world.volume]
+        ),
         geometry=not same_members(before.instances, after.instances)
         or not same_members(before.meshes, after.meshes)
         or len(before.materials) != len(after.materials),

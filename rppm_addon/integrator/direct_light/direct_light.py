@@ -9,6 +9,7 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
+from ...gl.programs.program import ComputeProgram
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight as DirectLightMode
 from ..camera_paths.importons import Importons
@@ -34,12 +35,19 @@ Record(
     light_sample="uint",
     sample_weight="float",
     splits_light="uint",
+    crosses_media="uint",
 )
 
+StorageBlock("ShadowMedia", "uint shadow_media[];")
+"""Flags of paths in the media that shadow rays have come into (shaders/materials/medium.glsl)."""
 Record("PassSurfaceParameters", surface_count="uint")
 
 _SURFACES_AT_ONCE = 16
 """Transparent surfaces between two readings of the number of shadow rays from a GPU, each of which waits for it."""
+
+
+def _media_pixels(sizes: StageSizes) -> int:
+    return band_pixels(sizes) if sizes.features.has_media else 0
 
 
 def _pass_pixels(sizes: StageSizes) -> int:
@@ -56,6 +64,7 @@ class DirectLight(Stage):
     splits = StorageBuffer("split of direct light", LIGHT_SPLIT, _pass_pixels, block="LightSplits")
     visibility = StorageBuffer("visibility", "uint", band_pixels, block="Visibility")
     triangles = StorageBuffer("triangles of sampled lights", "uint", band_pixels, block="LightTriangles")
+    _media = StorageBuffer("media of shadow rays", "uint", _media_pixels, block="ShadowMedia")
     active_rays = PathList("active shadow rays", band_pixels)
     # Of scenes with transparent surfaces.
     _hits = StorageBuffer("hits of shadow rays", HIT)
@@ -65,6 +74,8 @@ class DirectLight(Stage):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._sample = library.compute("direct_light/sample.comp")
+        if sizes.features.has_media:
+            self._sample_in_media = library.compute("media/in_scattering/sample_lights.comp")
         self._soften = library.compute("direct_light/terminator.comp")
         self._meet = library.compute("direct_light/meet.comp")
         self._pass = library.compute("direct_light/pass.comp")
@@ -89,29 +100,52 @@ class DirectLight(Stage):
             return
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):
-                self._sample_lights(context, importons, band, iteration, segment, ray)
-                active = self.active_rays
-                active.take(importons.active, self._rays.buffer)
-                if active.known_empty:
-                    continue
-                if context.resolve.has_terminators:
-                    self._soften_terminator(context, importons)
-                context.lights.emitters.tint_contributions(
-                    context.resolve,
-                    self._rays.buffer,
-                    self.triangles.buffer,
-                    self.contributions.buffer,
-                    active,
-                    iteration.number,
+                self._sample_lights(
+                    self._sample, context, importons, band, iteration, segment, ray, iteration.shadow_rays
                 )
-                linking = context.lights.linking_blocks(self.contributions.buffer)
-                if context.materials.any_passes_shadow_rays:
-                    self._pass_surfaces(context, importons, linking, iteration, segment)
-                else:
-                    context.acceleration.occluded(
-                        self._rays.buffer, self.triangles.buffer, self.visibility.buffer, active, linking
-                    )
-                active.run(self._add, {**context.blocks, **self.blocks})
+                self._cast(context, importons, iteration, segment, context.resolve.has_terminators)
+
+    def add_in_media(
+        self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int
+    ) -> None:
+        """Add the direct light that media scatter along the rays of the active camera paths, whose hits are resolved.
+
+        Nothing is added where photons bring direct light, or where none of it would come to the film.
+        """
+        if not context.materials.media.scatter or not iteration.needs_radiance:
+            return
+        if context.settings.direct_light is not DirectLightMode.RAYS:
+            return
+        with context.timers.stage("direct light in media"):
+            self._sample_lights(self._sample_in_media, context, importons, band, iteration, segment, 0, 1)
+            self._cast(context, importons, iteration, segment, has_terminators=False)
+
+    def _cast(
+        self, context: StageContext, importons: Importons, iteration: Iteration, segment: int, has_terminators: bool
+    ) -> None:
+        """Trace the shadow rays of sampled lights, and add what arrives."""
+        active = self.active_rays
+        active.take(importons.active, self._rays.buffer)
+        if active.known_empty:
+            return
+        if has_terminators:
+            self._soften_terminator(context, importons)
+        context.lights.emitters.tint_contributions(
+            context.resolve,
+            self._rays.buffer,
+            self.triangles.buffer,
+            self.contributions.buffer,
+            active,
+            iteration.number,
+        )
+        linking = context.lights.linking_blocks(self.contributions.buffer)
+        if context.materials.any_passes_shadow_rays:
+            self._pass_surfaces(context, importons, linking, iteration, segment)
+        else:
+            context.acceleration.occluded(
+                self._rays.buffer, self.triangles.buffer, self.visibility.buffer, active, linking
+            )
+        active.run(self._add, {**context.blocks, **self.blocks})
 
     def _pass_surfaces(
         self,
@@ -155,22 +189,25 @@ class DirectLight(Stage):
 
     def _sample_lights(
         self,
+        program: ComputeProgram,
         context: StageContext,
         importons: Importons,
         band: Band,
         iteration: Iteration,
         segment: int,
         ray: int,
+        rays: int,
     ) -> None:
-        """A light for each vertex, the how many-th shadow ray to it, and what it adds where nothing is in between."""
+        """Sample a light for each vertex, the ``ray``-th of so many, and what it adds where nothing is in between."""
         importons.active.run(
-            self._sample,
+            program,
             {**context.blocks, **importons.lit_blocks, **self.blocks},
             {
                 "segment": segment,
                 "first_pixel": band.first_pixel,
-                "light_sample": (iteration.number - 1) * iteration.shadow_rays + ray,
-                "sample_weight": 1.0 / iteration.shadow_rays,
+                "light_sample": (iteration.number - 1) * rays + ray,
+                "sample_weight": 1.0 / rays,
                 "splits_light": self._splits_light,
+                "crosses_media": context.materials.any_passes_shadow_rays,
             },
         )

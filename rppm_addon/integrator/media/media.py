@@ -64,6 +64,17 @@ class Media(Stage):
         if self._find_media(context, iteration):
             self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")
 
+    def volume(self, context: StageContext) -> float:
+        """Return the volume in which media lie, m^3: that of the boxes around them, or of the scene."""
+        if not self.is_on:
+            return 0.0
+        extent = np.maximum(context.geometry.bounds_high - context.geometry.bounds_low, 1e-6)
+        whole = float(np.prod(extent))
+        if context.materials.media.world_scatters:
+            return whole
+        boxes = _boxes(context.scene, context.materials.media.materials).astype(np.float64)
+        return min(float(np.prod(boxes[:, 1] - boxes[:, 0], axis=1).sum()), whole)
+
     def _find_media(self, context: StageContext, iteration: Iteration) -> bool:
         """Find where media are, and what is in them, for a new scene; true where there are any."""
         if not self.is_on:

@@ -133,6 +133,7 @@ class Photons(Stage):
             if context.lights.are_cut:
                 self._emission.cut_soft_lights(context, self.blocks, self._active)
         self._context.moderngl.copy_buffer(self._emitted.buffer, paths)
+        self._begin_segment(0)
 
     def trace(self, context: StageContext, segment: int) -> bool:
         """Find what the photons that go on hit; whether any may do so."""
@@ -141,7 +142,8 @@ class Photons(Stage):
             if not self._active.bound(segment):
                 return False
             context.acceleration.trace(self._rays.buffer, self._hits.buffer, self._active)
-            return True
+        self._begin_segment(segment)
+        return True
 
     def resolve(
         self, context: StageContext, iteration: Iteration, segment: int, has_adjoint_queries: bool = False
@@ -164,7 +166,6 @@ class Photons(Stage):
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
         has_adjoint_queries = context.materials.any_depends_on_view
         with context.timers.stage("photon scattering"):
-            self._begin_segment(segment)
             if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
                 self._emission.leave_to_shadow_rays(context, self.blocks, self._active)
             self._active.run(

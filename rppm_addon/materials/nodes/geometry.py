@@ -40,6 +40,8 @@ KINDS = {
     "attribute": _geometry(
         {"color": COLOR, "vector": VECTOR, "fac": FLOAT, "alpha": FLOAT}, resources=("attribute",)
     ),
+    # Of a grid of a volume: 1 where there is none of that name.
+    "grid_attribute": _geometry({"color": COLOR, "fac": FLOAT}, resources=("attribute",)),
     "new_geometry": _geometry(
         {
             **dict.fromkeys(("position", "normal", "tangent", "true_normal", "incoming", "parametric"), VECTOR),

@@ -27,8 +27,6 @@ KINDS = {
     # Both distribute weights and have no GLSL; their shaders are the inputs "shader" and "shader_001".
     "mix_shader": _shader("shader", {"fac": (FLOAT, 0.5)}),
     "add_shader": _shader("shader"),
-    # Of a volume, which has no surface, the "emission" is its absorption coefficient in 1/m.
-    "volume_absorption": _shader("volume", _GRAY | {"density": (FLOAT, 1.0)}),
     "bsdf_diffuse": _shader("bsdf", _GRAY | {"roughness": (FLOAT, 0.0)} | _NORMAL),
     "bsdf_translucent": _shader("bsdf", _GRAY | _NORMAL),
     "bsdf_transparent": _shader("bsdf", _WHITE),

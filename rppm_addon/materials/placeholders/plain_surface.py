@@ -113,6 +113,9 @@ class _Mean:
         if node.kind in _LIGHTS:
             self._emission += weight * self._number(node, "strength", 1.0) * self._color_of(node, "color")
             return
+        if node.kind == "volume_boundary":
+            self._transparent += weight
+            return
         if node.kind == "bsdf_transparent":
             self._transparent += weight * float(np.clip(self._color_of(node, "color"), 0.0, 1.0).mean())
             return

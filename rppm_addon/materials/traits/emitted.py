@@ -14,7 +14,6 @@ _EMITTING = {
     "emission": ("color", "strength"),
     "background": ("color", "strength"),
     "plain_surface": ("emission",),
-    "volume_absorption": ("density",),
     "bsdf_principled": ("emission_color", "emission_strength"),
 }
 """Shader nodes that emit where none of these inputs is 0."""
@@ -76,7 +75,8 @@ class LightVariation:
 
 
 _SAME_EVERYWHERE = {
-    "light_path", "object_info", "particle_info", "attribute", "uvmap", "random_per_island", "vector_transform",
+    "light_path", "object_info", "particle_info", "attribute", "grid_attribute", "uvmap", "random_per_island",
+    "vector_transform",
 }  # fmt: skip
 """Nodes that give the same at all places of a light, but for what feeds them."""
 _BY_DIRECTION = {("new_geometry", "incoming"), ("tex_coord", "reflection")}

@@ -1,20 +1,43 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node graphs of volumes, taken apart into what they say of a medium."""
+"""Node graphs of volumes, taken apart into the coefficients and the phase functions of a medium."""
 
 import dataclasses
 import enum
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterator
 
-from ...scene.node_graphs import Link, NodeGraph
+import numpy as np
+
+from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from ..nodes import KINDS
+from ..nodes.volumes import PHASES
+from ..phase_functions import HENYEY_GREENSTEIN, MODELS, Parameters, PhaseModel
 from ..records import PhaseFunctionKind
 from .emitted import is_positive, reachable
 
-_ABSORBING = {"volume_absorption": "density"}
-_EMITTING = {"emission": "strength", "background": "strength"}
-"""Kinds of nodes, and the input that none of it comes from when it is 0."""
-_SURFACES = {"bsdf_principled": "emission_strength"}
-"""Likewise: surfaces say nothing of a volume, as in Cycles."""
+Evaluate = Callable[[NodeGraph], np.ndarray]
+"""Gives the (height, width, 3) float32 "emission" of a node graph."""
+
+_ABSORPTION: dict[str, tuple[tuple[str, ...], ...]] = {
+    "volume_absorption": (("density",),),
+    "volume_coefficients": (("absorption_coefficients",),),
+    "volume_principled": (("density",),),
+}
+_SCATTERING = {
+    "volume_scatter": (("density", "color"),),
+    "volume_coefficients": (("scatter_coefficients",),),
+    "volume_principled": (("density", "color"),),
+}
+_EMISSION = {
+    "emission": (("strength",),),
+    "background": (("strength",),),
+    "volume_coefficients": (("emission_coefficients",),),
+    "volume_principled": (("emission_strength", "emission_color"), ("blackbody_intensity", "blackbody_tint")),
+}
+"""Kinds of nodes that contribute to a coefficient, and sets of inputs: the node contributes if all inputs of a set are
+positive."""
+_COEFFICIENTS = {"ABSORPTION": _ABSORPTION, "SCATTERING": _SCATTERING, "EMISSION": _EMISSION}
+"""The same by the option "coefficient" of a node."""
+_COMBINING = ("mix_shader", "add_shader")
 
 
 _CONSTANT = {"light_path", "uvmap", "random_per_island", "tangent", "strand_value", "hair_info", "round_size"}
@@ -42,9 +65,21 @@ class Scattering:
 
     coefficient: NodeGraph
     """Graph whose "emission" is the scattering coefficient, 1/m."""
-    kind: PhaseFunctionKind = PhaseFunctionKind.HENYEY_GREENSTEIN
-    parameters: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    """Parameters of the phase function (PhaseFunctionKind)."""
+    model: PhaseModel = HENYEY_GREENSTEIN
+    inputs: tuple[float, ...] | NodeGraph = (0.0,)
+    """Inputs of the model; a graph where nodes give them, whose "emission" has them as its components."""
+
+    @property
+    def kind(self) -> PhaseFunctionKind:
+        """The kind of the phase function."""
+        return self.model.kind
+
+    def parameters(self, evaluate: Evaluate) -> Parameters:
+        """Return the parameters of the phase function, of which one set stands for the whole medium."""
+        inputs = self.inputs
+        if isinstance(inputs, NodeGraph):
+            inputs = tuple(map(float, evaluate(inputs)[0, 0, : len(self.model.inputs)]))
+        return self.model.parameters(*inputs)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,10 +99,15 @@ class Interior:
         return self.variation > Variation.NOTHING
 
     @property
-    def graphs(self) -> list[NodeGraph]:
+    def coefficients(self) -> list[NodeGraph]:
         """The graphs of all coefficients."""
         graphs = [self.absorption, self.emission, *(part.coefficient for part in self.scattering)]
         return [graph for graph in graphs if graph is not None]
+
+    @property
+    def graphs(self) -> list[NodeGraph]:
+        """The graphs of all coefficients, and of the inputs of phase functions."""
+        return self.coefficients + [part.inputs for part in self.scattering if isinstance(part.inputs, NodeGraph)]
 
     @classmethod
     def of(cls, graph: NodeGraph | None) -> "Interior":
@@ -76,8 +116,9 @@ class Interior:
             return cls()
         if any(node.kind not in KINDS for node in graph.nodes):
             return cls(graph)  # which whoever compiles it reports
-        absorption, emission = _part(graph, _ABSORBING), _part(graph, _EMITTING)
-        return cls(absorption, emission, variation=variation(graph) if absorption or emission else Variation.NOTHING)
+        medium = cls(_sum(graph, "ABSORPTION"), _sum(graph, "EMISSION"), tuple(_scattering(graph)))
+        varied = max(map(variation, medium.coefficients), default=Variation.NOTHING)
+        return dataclasses.replace(medium, variation=varied)
 
 
 def variation(graph: NodeGraph) -> Variation:
@@ -97,27 +138,65 @@ def _variation_of(kind: str, output: str) -> Variation:
         return Variation.NOTHING
     if kind in _BY_OBJECT:
         return Variation.OBJECT
-    if kind in ("attribute", "tex_image") or (kind, output) in _BY_PLACE_IN_OBJECT:
+    if kind in ("attribute", "grid_attribute", "tex_image") or (kind, output) in _BY_PLACE_IN_OBJECT:
         return Variation.PLACE_IN_OBJECT
     return Variation.PLACE
 
 
-def _part(graph: NodeGraph, kinds: dict[str, str]) -> NodeGraph | None:
-    """The graph with nothing but nodes of some kinds in effect; None where that gives nothing."""
-    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
-    if not any(is_positive(node, kinds[node.kind]) for node in nodes if node.kind in kinds):
-        return None
-    others = {kind: name for kind, name in (_ABSORBING | _EMITTING | _SURFACES).items() if kind not in kinds}
-    return _without(graph, others) if _has(graph, others) else graph
+def _sum(graph: NodeGraph, coefficient: str) -> NodeGraph | None:
+    """The graph of a coefficient to which all nodes contribute; None where none does."""
+    nodes = _contributing(graph, coefficient)
+    return _alone(graph, nodes, {"coefficient": coefficient}) if nodes else None
 
 
-def _has(graph: NodeGraph, kinds: Collection[str]) -> bool:
-    return any(node.kind in kinds for node in graph.nodes)
+def _scattering(graph: NodeGraph) -> Iterator[Scattering]:
+    """The parts of each node that scatters."""
+    for index in sorted(_contributing(graph, "SCATTERING")):
+        node = graph.nodes[index]
+        for model in MODELS[str(node.options.get("phase", PHASES[0]))]:
+            options = {"coefficient": "SCATTERING", "mie_lobe": model.mie_lobe}
+            yield Scattering(_alone(graph, {index}, options), model, _phase_inputs(graph, node, model))
 
 
-def _without(graph: NodeGraph, kinds: dict[str, str]) -> NodeGraph:
-    nodes = [
-        dataclasses.replace(node, inputs=node.inputs | {kinds[node.kind]: 0.0}) if node.kind in kinds else node
-        for node in graph.nodes
-    ]
+def _contributing(graph: NodeGraph, coefficient: str) -> set[int]:
+    """Indices of the nodes that contribute to a coefficient."""
+    kinds = _COEFFICIENTS[coefficient]
+    return {
+        index
+        for index in reachable(graph, graph.surface)
+        if any(
+            all(is_positive(graph.nodes[index], name) for name in names)
+            for names in kinds.get(graph.nodes[index].kind, ())
+        )
+    }
+
+
+def _alone(graph: NodeGraph, contributing: Collection[int], options: dict[str, object]) -> NodeGraph:
+    """The graph with nothing but some of its shaders, which have these options as far as their kinds know them."""
+
+    def links_to_others(value: object) -> bool:
+        if not isinstance(value, Link):
+            return False
+        node = graph.nodes[value.node]
+        return KINDS[node.kind].is_shader and node.kind not in _COMBINING and value.node not in contributing
+
+    nodes = list(graph.nodes)
+    for index, node in enumerate(nodes):
+        if index in contributing:
+            known = {name: value for name, value in options.items() if name in KINDS[node.kind].options}
+            nodes[index] = dataclasses.replace(node, options=node.options | known)
+        elif node.kind in _COMBINING:
+            inputs = {name: value for name, value in node.inputs.items() if not links_to_others(value)}
+            nodes[index] = dataclasses.replace(node, inputs=inputs)
     return dataclasses.replace(graph, nodes=nodes)
+
+
+def _phase_inputs(graph: NodeGraph, node: ShaderNode, model: PhaseModel) -> tuple[float, ...] | NodeGraph:
+    declared = KINDS[node.kind].inputs
+    values = [node.inputs.get(name, declared[name][1]) for name in model.inputs]
+    if not any(isinstance(value, Link) for value in values):
+        return tuple(float(np.mean(value)) for value in values)
+    asking = dataclasses.replace(graph, nodes=list(graph.nodes))
+    given = asking.add("combine_xyz", "vector", name=node.name, **dict(zip("xyz", values, strict=False)))
+    asking.surface = asking.add("emission", "emission", name=node.name, color=given)
+    return asking

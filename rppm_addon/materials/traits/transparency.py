@@ -36,7 +36,7 @@ def _is_transparent(node: ShaderNode) -> bool:
         return node.inputs.get("alpha", 1.0) != 1.0 or bool(node.options.get("thin_wall"))
     if node.kind == "plain_surface":
         return node.inputs.get("transparent") != 0.0
-    return node.kind == "bsdf_transparent"
+    return node.kind in ("bsdf_transparent", "volume_boundary")
 
 
 def _refracts(node: ShaderNode) -> bool:

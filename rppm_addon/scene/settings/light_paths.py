@@ -44,6 +44,16 @@ class LightPathSettings(SettingGroup):
         soft_maximum=64,
     )
     """The name and the default are those of Cycles."""
+    volume_bounces: int = setting(
+        0,
+        "Volume Bounces",
+        "Most times that light is scattered within volumes after the first, which Max Bounces limits as well. 0 is "
+        "single scattering",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    """The name and the default are those of Cycles."""
     camera_path_length: int = setting(
         1 + _MOST_BOUNCES,
         "Max Camera Bounces",

@@ -5,6 +5,7 @@
 layout(local_size_x = 64) in;
 
 #include <EnterParameters>
+#include <MediumScattering>
 #include "common/iteration.glsl"
 #include "common/active_paths.glsl"
 uniform Parameters { EnterParameters parameters; };
@@ -18,6 +19,9 @@ void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
     walk_rays[index].maximum_distance = 0.0;
+#ifdef MEDIA
+    if ((photon_paths[index].flags & PATH_SCATTERED_IN_MEDIUM) != 0u) return;
+#endif
     vec3 flux = photon_paths[index].flux;
     Closure closure = closures[index];
     if (!(largest(flux) > 0.0) || !has_subsurface(closure) || adjoint_queries[index].part != PART_DIFFUSE) return;

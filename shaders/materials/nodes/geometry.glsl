@@ -50,6 +50,15 @@ void node_attribute(Surface surface, uint layer, out vec3 color, out vec3 vector
     alpha = value.a;
 }
 
+void node_grid_attribute(Surface surface, uint layer, out vec3 color, out float fac) {
+    vec3 vector;
+    float alpha;
+    node_attribute(surface, layer, color, vector, fac, alpha);
+    if (attribute_place(surface, layer).y > 0u) return;
+    color = vec3(1.0);
+    fac = 1.0;
+}
+
 void node_generated_coord(Surface surface, uint layer, out vec3 generated) {
     generated =
         attribute_place(surface, layer).y > 0u ? attribute_value(surface, layer).xyz : within_texture_space(surface);

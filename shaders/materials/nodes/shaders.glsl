@@ -142,8 +142,3 @@ void node_bsdf_principled(inout ClosureBuilder builder, float weight, int distri
                    emission_color * max(emission_strength, 0.0),
                    Film(max(thin_film_thickness, 0.0), max(thin_film_ior, 1e-3)), distribution == 1, thin_wall == 1));
 }
-
-// What absorbs is not seen: its coefficient takes the place of the emission.
-void node_volume_absorption(inout ClosureBuilder builder, float weight, vec3 color, float density) {
-    builder.closure.emission += weight * max(density, 0.0) * (1.0 - clamp(color, 0.0, 1.0));
-}

@@ -20,10 +20,10 @@ void main() {
     if (index >= parameters.count) return;
     vec4 start = test_rays[2u * index], way = test_rays[2u * index + 1u];
     uint flags = parameters.media << FIRST_MEDIUM;
-    float flight = segment_free_flight(flags, start.xyz, way.xyz, start.w, way.w);
+    float flight = segment_free_flight(flags, start.xyz, way.xyz, start.w, 1, way.w);
     results[4u * index] = vec4(segment_thickness(flags, start.xyz, way.xyz, start.w), flight);
     results[4u * index + 1u] = vec4(segment_emission(flags, start.xyz, way.xyz, start.w), 0.0);
-    MediumCoefficients medium = path_medium(flags, start.xyz, way.xyz, 0.5 * start.w);
+    MediumCoefficients medium = path_medium(flags, PlaceOnRay(start.xyz, way.xyz, 0.5 * start.w));
     results[4u * index + 2u] = vec4(medium.absorption + medium.scattering, 0.0);
     results[4u * index + 3u] = vec4(lookup_offset(start.xyz, way.xyz), 0.0);
 }

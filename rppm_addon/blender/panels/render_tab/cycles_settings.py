@@ -16,6 +16,7 @@ SHARED = {
     "filter_width": "filter_width",
     "max_bounces": "max_bounces",
     "transparent_max_bounces": "transparent_max_bounces",
+    "volume_bounces": "volume_bounces",
     **{
         name: name
         for what in ("use_{}denoising", "{}denoising_input_passes", "{}denoising_prefilter", "{}denoising_quality")

@@ -17,6 +17,7 @@ class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
         settings = context.scene.rppm
         column = self.column()
         column.prop(settings, "max_bounces", text="Total")
+        column.prop(settings, "volume_bounces", text="Volume")
         column.prop(settings, "transparent_max_bounces", text="Transparent")
         column.prop(settings, "specular_roughness", text="Specular")
 

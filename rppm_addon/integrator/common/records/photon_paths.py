@@ -57,5 +57,8 @@ Constants("PhotonHistory", PHOTON=PhotonHistory, PHOTON_HISTORY_SHIFT=7)
 PHOTON_FLAG_BITS = 10
 """Number of flag bits in a photon's ``flags`` word; its other bits are those of a float."""
 Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
+SCATTERED_IN_MEDIUM = 1 << PHOTON_FLAG_BITS + 1
+"""Flag of a photon path in a segment in which a medium has scattered it, so that no surface does."""
+Constants("MediumScattering", PATH_SCATTERED_IN_MEDIUM=SCATTERED_IN_MEDIUM)
 Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
 """A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""

@@ -24,6 +24,9 @@ class RandomStage(enum.IntEnum):
     SUBSURFACE_PHOTONS = 12
     NODE_RAYS = 13
     COVERAGE = 14
+    MEDIA = 15
+    IN_SCATTERING = 16
+    MEDIUM_PHOTONS = 17
 
 
 Constants("RandomStages", STAGE=RandomStage)

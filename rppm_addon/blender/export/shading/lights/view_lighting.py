@@ -69,7 +69,7 @@ def relit(scene: Scene, lighting: ViewLighting, picture: Image | None) -> Scene:
     if lighting.use_scene_world:
         return replace(scene, lights=lights)
     images = list(scene.images)
-    world = World(np.ones(3), _graph(lighting, picture, images), scene.world.mist)
+    world = World(np.ones(3), _graph(lighting, picture, images), mist=scene.world.mist)
     return replace(scene, lights=lights, world=world, images=images)
 
 

@@ -15,6 +15,7 @@ from ...context import ExportContext
 from ...view_layer.layers import light_group_of
 from ..nodes.graphs import GraphExporter
 from ..nodes.inlining import readable_tree
+from ..nodes.material_outputs import export_volume
 from .lights import max_bounces_of
 
 _EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}
@@ -51,13 +52,12 @@ def _environment(world: bpy.types.World, context: ExportContext) -> tuple[World,
     if output is None:
         return World(), []
     exporter = GraphExporter(owner, context, tree)
-    if output.inputs["Volume"].is_linked:
-        context.report.warn(f"{owner}: its volume is not rendered yet and is ignored")
     exporter.graph.surface = exporter.surface()
+    volume = export_volume(owner, context, tree) if exporter.is_linked(output.inputs["Volume"], ()) else None
     if exporter.graph.surface is None:
-        return World(), []
+        return World(volume=volume), []
     suns = [_sun(exporter.graph, index, sky, owner) for index, sky in exporter.skies.items()]
-    return World(np.ones(3), exporter.graph), [sun for sun in suns if sun is not None]
+    return World(np.ones(3), exporter.graph, volume), [sun for sun in suns if sun is not None]
 
 
 def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:

@@ -65,10 +65,16 @@ class GraphExporter:
     """
 
     def __init__(
-        self, owner: str, context: ExportContext, tree: ReadableTree | None = None, pass_index: int = 0
+        self,
+        owner: str,
+        context: ExportContext,
+        tree: ReadableTree | None = None,
+        pass_index: int = 0,
+        *,
+        is_volume: bool = False,
     ) -> None:
         """owner: what warnings name, such as 'Material "Glass"'; tree: of the nodes, None if the user's nodes are read
-        one by one; pass_index: the material's."""
+        one by one; pass_index: the material's; is_volume: whether the graph is that of a volume."""
         self.graph = NodeGraph()
         self.owner = owner
         self._tree = tree
@@ -77,7 +83,8 @@ class GraphExporter:
         self.pass_index = pass_index
         self.skies: dict[int, Sky] = {}
         """Sky textures by the index of their node."""
-        self.is_world = owner.startswith("World")
+        self.is_volume = is_volume
+        self.is_world = owner.startswith("World") and not is_volume
         self._links = LinkTable()
         self._known: dict[tuple, object] = {}
         self._open: set[tuple] = set()
@@ -299,9 +306,6 @@ class GraphExporter:
         """The stand-in for a node that is not rendered: a diffuse surface of its color, or nothing, as in Cycles."""
         if output.type != "SHADER":
             self.warn(node, "is not rendered yet; the value of the socket it feeds is used")
-            return None
-        if node.type in {"VOLUME_ABSORPTION", "VOLUME_SCATTER", "PRINCIPLED_VOLUME", "VOLUME_COEFFICIENTS"}:
-            self.warn(node, "is a volume and no surface; it is left out")
             return None
         if node.type == "EEVEE_SPECULAR":
             self.warn(node, "is for EEVEE alone and black, as in Cycles; use a Principled BSDF")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Outputs of a material's tree beside its surface: displacement, passes of AOV nodes, and the interior."""
+"""Outputs of a material's tree beside its surface: displacement, passes of AOV nodes, and the volume."""
 
 from collections.abc import Iterator
 
@@ -50,8 +50,8 @@ def _aov_outputs(tree: bpy.types.NodeTree, path: Path) -> Iterator[tuple[bpy.typ
             yield from _aov_outputs(node.node_tree, (*path, node))
 
 
-def export_interior(owner: str, context: ExportContext, tree: ReadableTree) -> NodeGraph:
-    """The graph of the volume inside."""
-    exporter = GraphExporter(owner, context, tree)
+def export_volume(owner: str, context: ExportContext, tree: ReadableTree, pass_index: int = 0) -> NodeGraph:
+    """The graph of a volume: of a material, whose surface encloses it, or of a world."""
+    exporter = GraphExporter(owner, context, tree, pass_index, is_volume=True)
     exporter.graph.surface = exporter.shader(tree.output.inputs["Volume"], Path())
     return exporter.graph

@@ -5,10 +5,10 @@ import bpy
 
 from .....scene import Material, NodeGraph
 from ...context import ExportContext
-from . import surface_nodes, value_nodes  # noqa: F401  register their handlers
+from . import surface_nodes, value_nodes, volume_nodes  # noqa: F401  register their handlers
 from .graphs import GraphExporter
 from .inlining import readable_tree
-from .material_outputs import export_aovs, export_displacement, export_interior
+from .material_outputs import export_aovs, export_displacement, export_volume
 
 
 def plain_surface(color: tuple[float, float, float]) -> NodeGraph:
@@ -39,8 +39,7 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
     if hasattr(material, "rppm") and material.rppm.use_dispersion:
         exported.abbe_number = material.rppm.abbe_number
     if exporter.is_linked(output.inputs["Volume"], ()):
-        exported.interior = export_interior(owner, context, tree)
+        exported.interior = export_volume(owner, context, tree, material.pass_index)
         if not exporter.is_linked(output.inputs["Surface"], ()):
-            # Only an interior: the boundary itself is not there.
-            graph.surface = graph.add("bsdf_transparent", "bsdf")
+            graph.surface = graph.add("volume_boundary", "bsdf")
     return exported

@@ -294,7 +294,7 @@ _OF_POINTS = {
 """Likewise of Point Info's."""
 
 
-@handles("VOLUME_INFO", "UVALONGSTROKE")
+@handles("UVALONGSTROKE")
 def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     return 0.0 if output.type == "VALUE" else (0.0, 0.0, 0.0)
 

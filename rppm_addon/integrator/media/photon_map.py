@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The volume photon map: photons that media have scattered, and the camera rays that gather them."""
+
+import math
+
+import numpy as np
+
+from ...gl.buffer_sets import ComputeShader, StorageBuffer
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ..camera_paths.importons import Importons
+from ..common.band import Band
+from ..common.iteration import Iteration
+from ..common.stage import Stage
+from ..common.stage_sizes import StageSizes
+from ..density_estimation.splat_sums import SUM_PARAMETERS, SplatSums
+from ..device_scene.stage_context import StageContext
+from ..photons.photons import Photons
+
+Record("ListMediumPhotonsParameters", count="uint")
+Record("MediumGridParameters", buckets="uint", side="float")
+Record(
+    "GatherInMediaParameters",
+    segment="uint",
+    first_pixel="uint",
+    radius="float",
+    side="float",
+    buckets="uint",
+    first_candidate="uint",
+    candidates="uint",
+    **SUM_PARAMETERS,
+)
+StorageBlock("MediumPhotons", "uint medium_photon_count; uint medium_photons[];")
+"""Numbers of the photons that media have scattered."""
+
+_EXPECTED_PHOTONS = 8
+"""Photons in the kernel of the first iteration, where they lie evenly in the media."""
+_WIDEST = 0.1
+"""Largest radius over the radius of the scene."""
+_FEWEST_BUCKETS = 1 << 10
+_CANDIDATES = 30_000
+"""Photons that a thread looks at: llvmpipe ends the loops of a thread after 65535 rounds."""
+
+
+def kernel_shrinkage(iteration: int, alpha: float) -> float:
+    """Return the radius of a three-dimensional kernel in iteration i >= 1 over that of the first: the product of
+    cbrt((k + alpha) / (k + 1)), k < i (Knaus and Zwicker 2011, section 5.2)."""
+    k = np.arange(1, iteration)
+    return float(np.exp(np.sum(np.log((k + alpha) / (k + 1))) / 3.0))
+
+
+class MediumPhotonMap(Stage):
+    """Photons in media, by cells of a hashed grid, and their density along camera rays."""
+
+    memory_group = "media"
+    remedy = "lower the photons per iteration or the photon path length"
+    _numbers = StorageBuffer("photons in media", "uint", header="uint", block="MediumPhotons")
+    _grid = StorageBuffer("grid of photons in media", "uvec2", header="uvec4", block="Buckets")
+    _sorted = StorageBuffer("sorted photons in media", "uvec4", texel_bytes=16, block="SortedPhotons")
+    _list = ComputeShader("media/photon_map/list.comp")
+    _count = ComputeShader("media/photon_map/count.comp")
+    _allocate = ComputeShader("density_estimation/photon_grid/allocate.comp")
+    _place = ComputeShader("media/photon_map/place.comp")
+    _gather = ComputeShader("media/photon_map/gather.comp")
+    photon_count = 0
+    """Photons of the iteration that the map holds."""
+    radius = 0.0
+    """Radius of the kernel, meters."""
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where materials or the world have a volume."""
+        return sizes.features.has_media
+
+    def build(self, context: StageContext, photons: Photons, iteration: Iteration, volume: float) -> None:
+        """Sort the photons of an iteration; ``volume``: of the media, m^3."""
+        self.photon_count = 0
+        if not (self.is_on and context.materials.media.scatter):
+            return
+        with context.timers.stage("photon map of media"):
+            slots = max(photons.slots, 1)
+            self._numbers.require_items(slots)
+            self._numbers.write(np.zeros(1, np.uint32))
+            blocks = {**context.blocks, **photons.blocks, **self.blocks}
+            self._list.run(slots, blocks, {"count": slots})
+            self.photon_count = int(self._numbers.read(np.uint32, 1)[0])
+            if not self.photon_count:
+                return
+            self.radius = self._radius(context, iteration, volume)
+            buckets = self._buckets
+            self._grid.require_items(buckets)
+            self._grid.clear()
+            self._sorted.require_items(self.photon_count)
+            blocks = {**photons.blocks, **self.blocks}
+            self._count.run(self.photon_count, blocks, self._cells)
+            self._allocate.run(buckets, blocks, {"count": buckets})
+            self._place.run(self.photon_count, blocks, self._cells)
+
+    def gather(self, context: StageContext, importons: Importons, sums: SplatSums, band: Band, segment: int) -> None:
+        """Add the light that media scatter toward the camera along the rays of a segment, but for direct light."""
+        if not self.photon_count:
+            return
+        with context.timers.stage("gathering in media"):
+            blocks = {**context.blocks, **importons.blocks, **self.blocks, **sums.blocks}
+            for first in range(0, self.photon_count, _CANDIDATES):
+                importons.active.run(
+                    self._gather,
+                    blocks,
+                    {
+                        "segment": segment,
+                        "first_pixel": band.first_pixel,
+                        "radius": self.radius,
+                        **self._cells,
+                        "first_candidate": first,
+                        "candidates": _CANDIDATES,
+                        **sums.parameters,
+                    },
+                )
+
+    def _radius(self, context: StageContext, iteration: Iteration, volume: float) -> float:
+        ball = _EXPECTED_PHOTONS * volume / self.photon_count
+        first = min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * context.geometry.radius)
+        return first * kernel_shrinkage(iteration.number, context.settings.alpha)
+
+    @property
+    def _buckets(self) -> int:
+        return max(_FEWEST_BUCKETS, 1 << (self.photon_count - 1).bit_length())
+
+    @property
+    def _cells(self) -> dict[str, float]:
+        return {"buckets": self._buckets, "side": 2.0005 * self.radius}

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scattering of photons by media, on their way between surfaces."""
+
+from ...gl.buffer_sets import ComputeShader
+from ...gl.buffers.records import Record
+from ..common.stage import Stage
+from ..common.stage_sizes import StageSizes
+from ..device_scene.stage_context import StageContext
+from ..photons.photons import Photons
+
+Record("ScatterInMediaParameters", segment="uint")
+
+
+class MediumScattering(Stage):
+    """Stores photons where media scatter them, and sends them on from there.
+
+    A photon path has one vertex in a segment: in a medium, or at the surface at the end of its ray.
+    """
+
+    memory_group = "media"
+    _scatter = ComputeShader("media/scattering/scatter_photons.comp")
+
+    @classmethod
+    def is_needed(cls, sizes: StageSizes) -> bool:
+        """Stage.is_needed: where materials or the world have a volume."""
+        return sizes.features.has_media
+
+    def scatter_photons(self, context: StageContext, photons: Photons, segment: int) -> None:
+        """Scatter some of the photons whose rays have been traced; surfaces are to scatter the others."""
+        if not (self.is_on and context.materials.media.scatter):
+            return
+        with context.timers.stage("photon scattering in media"):
+            photons.active.run(self._scatter, {**context.blocks, **photons.blocks}, {"segment": segment})

@@ -1,0 +1,137 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 PORTALS=1
+// Shadow rays from points in scattering media, one on each camera ray: light that is scattered once. The point is
+// sampled as the media scatter light, or by the angle at which the light sees the ray (Kulla and Fajardo 2012,
+// Importance Sampling Techniques for Path Tracing in Participating Media); MIS combines both.
+
+layout(local_size_x = 64) in;
+
+#include <DirectLightParameters>
+#include "common/iteration.glsl"
+#include "common/active_paths.glsl"
+#include "common/low_discrepancy.glsl"
+#include "common/bsdf/closure.glsl"
+#include "common/camera_path.glsl"
+#include "common/path_depth.glsl"
+readonly buffer Materials;
+readonly buffer Media;
+readonly buffer PhaseFunctions;
+#include "materials/medium.glsl"
+uniform Parameters { DirectLightParameters parameters; };
+#include "lights/light_tree.glsl"
+#include "common/phase_functions.glsl"
+#include "media/free_flight.glsl"
+readonly buffer Closures;
+readonly buffer Rays;
+readonly buffer CameraPaths;
+writeonly buffer ShadowRays;
+writeonly buffer LightTriangles;
+writeonly buffer Contributions;
+writeonly buffer LightSplits;
+writeonly buffer ShadowMedia;
+
+// The part of a ray on which light is scattered, and how.
+struct MediumSegment {
+    Ray ray;
+    float far;
+    uint flags;  // of the path
+};
+
+// Equiangular sampling: the angle at which a point sees the points of a segment is even.
+struct Equiangular {
+    float nearest;  // distance along the ray of the point that is nearest to the light, meters
+    float height;   // of the light above the ray, meters
+    float first;    // angles, radians
+    float last;
+};
+
+Equiangular equiangular(MediumSegment segment, vec3 center) {
+    float nearest = dot(center - segment.ray.origin, segment.ray.direction);
+    float height = max(length(center - segment.ray.origin - nearest * segment.ray.direction), 1e-6);
+    return Equiangular(nearest, height, atan(-nearest, height), atan(segment.far - nearest, height));
+}
+
+float equiangular_distance(Equiangular angles, float u) {
+    return angles.nearest + angles.height * tan(mix(angles.first, angles.last, u));
+}
+
+float equiangular_pdf(Equiangular angles, float distance) {
+    float along = distance - angles.nearest;
+    return angles.height / (max(angles.last - angles.first, 1e-20) * (angles.height * angles.height + along * along));
+}
+
+void leave_no_light(uint index) {
+    shadow_rays[index].maximum_distance = 0.0;
+    contributions[index] = vec4(0.0);
+    light_triangles[index] = NO_TRIANGLE;
+}
+
+LitPoint lit_point(vec3 position) { return LitPoint(position, vec3(0.0), true, 0u); }
+
+// The place of a light, about which points are sampled by their angle.
+vec3 light_center(Light light, uint emissive_triangle) {
+    if (light.kind != LIGHT_MESH) return light.position;
+    vec3 v0, v1, v2;
+    triangle_corners(emissive_triangles[emissive_triangle].triangle, v0, v1, v2);
+    return (v0 + v1 + v2) / 3.0;
+}
+
+// Pdf of a distance by both techniques, each taken for half of the points, 1/m; of lights without a place, by the
+// first.
+float distance_pdf(MediumSegment segment, bool has_place, Equiangular angles, float distance) {
+    float pdf = scattered_flight_pdf(segment.flags, segment.ray, segment.far, distance);
+    return has_place ? 0.5 * (pdf + equiangular_pdf(angles, distance)) : pdf;
+}
+
+void main() {
+    uint index = active_path();
+    if (index == NO_PATH) return;
+    leave_no_light(index);
+    Ray ray = rays[index];
+    CameraPath path = camera_paths[index];
+    if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u
+        || bounces_of(path.depth) > iteration.camera_bounces)
+        return;
+    if (!path_may_scatter(path.flags)) return;
+    float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
+    MediumSegment segment = MediumSegment(ray, far, path.flags);
+    uvec4 choices =
+        pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_IN_SCATTERING << 24u));
+    vec4 u = scrambled_sobol4(parameters.light_sample, choices),
+         v = scrambled_sobol4(parameters.light_sample, pcg4d(choices));
+    float distance = sample_scattered_flight(path.flags, ray, far, u.xy).distance;
+    LightChoice choice = choose_light_at(lit_point(ray.origin + distance * ray.direction),
+                                         chosen_environment_irradiance(ray.origin, false), v.x, v.y);
+    if (!(choice.probability > 0.0)) return;
+    Light light = lights[choice.light];
+    if (bounces_of(path.depth) > light.max_bounces) return;
+    bool has_place = light.kind != LIGHT_SUN && light.kind != LIGHT_WORLD;
+    Equiangular angles = Equiangular(0.0, 1.0, 0.0, 1.0);
+    if (has_place) {
+        angles = equiangular(segment, light_center(light, choice.triangle));
+        if (u.w < 0.5) distance = clamp(equiangular_distance(angles, u.z), 0.0, far);
+    }
+    float pdf = distance_pdf(segment, has_place, angles, distance);
+    vec3 position = ray.origin + distance * ray.direction;
+    LightSample sampled = sample_light(light, choice.triangle, position, v.zw);
+    if (!(pdf > 0.0) || !(largest(sampled.weight) > 0.0)) return;
+    vec3 scattered = scattered_phase(path.flags, PlaceOnRay(ray.origin, ray.direction, distance),
+                                     dot(sampled.direction, ray.direction));
+    vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, distance);
+    if (parameters.crosses_media == 0u)
+        transmittance *= segment_transmittance(path.flags, position, sampled.direction, sampled.distance);
+    shadow_media[index] = path.flags;
+    vec3 radiance = path.throughput * transmittance * scattered * sampled.weight / (pdf * choice.probability);
+    if (!(largest(radiance) > 0.0)) return;
+    uint link = 0u;
+    if (iteration.links_lights != 0u)
+        link = sampled.triangle != NO_TRIANGLE ? emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT : light.link;
+    contributions[index] = vec4(parameters.sample_weight * radiance, signed_code(false, link));
+    light_triangles[index] = sampled.triangle;
+    if (parameters.splits_light != 0u) light_splits[index] = LightSplit(vec3(0.0), choice.light, vec3(0.0), 0.0);
+    float reach = sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance) : INFINITY_DISTANCE;
+    shadow_rays[index] = Ray(position, NO_TRIANGLE, sampled.direction, reach);
+}

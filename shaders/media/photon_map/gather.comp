@@ -1,0 +1,132 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
+// media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
+// the surface where they begin.
+
+layout(local_size_x = 64) in;
+
+#include <GatherInMediaParameters>
+#include "common/iteration.glsl"
+#include "common/active_paths.glsl"
+#include "common/geometry.glsl"
+#include "common/photon.glsl"
+#include "common/path_depth.glsl"
+#include "common/camera_path.glsl"
+#include "common/low_discrepancy.glsl"
+#include "common/bsdf/closure.glsl"
+uniform Parameters { GatherInMediaParameters parameters; };
+readonly buffer Materials;
+readonly buffer Media;
+readonly buffer PhaseFunctions;
+#include "materials/medium.glsl"
+#include "common/phase_functions.glsl"
+#include "media/free_flight.glsl"
+#include "density_estimation/photon_grid/cells.glsl"
+readonly buffer Rays;
+readonly buffer CameraPaths;
+readonly buffer Closures;
+buffer Photons;
+readonly buffer PhotonOrigins;
+#include "density_estimation/splat_sums/collect.glsl"
+readonly buffer Buckets;
+readonly buffer SortedPhotons;
+
+// In dense places the radius shrinks to that of a sphere of so many photons, but not further than to a part of it.
+const float MOST_EXPECTED = 48.0, LEAST_RADIUS_FACTOR = 0.25;
+
+// A point where photons are gathered, and what they count for.
+struct GatherPoint {
+    vec3 position;
+    vec3 direction;  // of the camera ray
+    vec3 weight;     // throughput and transmittance over the pdf of the distance, m
+    vec3 scattering;
+    PlaceOnRay at;
+    uint flags;
+    uint depth;
+};
+
+bool exceeds_depth(uint camera_depth, uint photon) {
+    uint depth = camera_depth + (photons[photon].depth & DEPTH_MASK), most = iteration.max_bounces;
+    if (iteration.limits_bounces != 0u)
+        most = min(most, photon_origins[photon_path_of(photons[photon].path)].max_bounces);
+    return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
+}
+
+// Radiance that a photon adds, with the kernel 15 (1 - x^2) / (8 pi), whose integral over the unit ball is 1.
+vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {
+    float cosine = dot(photons[photon].direction, point.direction), inverse = 1.0 / radius;
+    float kernel = 15.0 / (8.0 * PI) * (1.0 - distance2 * inverse * inverse) * inverse * inverse * inverse;
+    vec3 phase = scattered_phase(point.flags, point.at, cosine) / max(point.scattering, vec3(1e-30));
+    return point.weight * phase * photons[photon].flux * kernel;
+}
+
+GatherPoint gather_point(uint index, CameraPath path, Ray ray) {
+    float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
+    uvec4 scramble =
+        pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_MEDIUM_PHOTONS << 24u));
+    FreeFlight flight = sample_scattered_flight(path.flags, ray, far, scrambled_sobol(iteration.number - 1u, scramble));
+    vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance);
+    vec3 weight = path.throughput * transmittance / max(flight.pdf, 1e-30);
+    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
+    return GatherPoint(ray.origin + flight.distance * ray.direction, ray.direction, weight,
+                       path_medium(path.flags, at).scattering, at, path.flags, path.depth);
+}
+
+void main() {
+    uint index = active_path();
+    if (index == NO_PATH) return;
+    Ray ray = rays[index];
+    CameraPath path = camera_paths[index];
+    if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u) return;
+    if (bounces_of(path.depth) > iteration.camera_bounces) return;
+    if (!path_may_scatter(path.flags)) return;
+    GatherPoint point = gather_point(index, path, ray);
+    if (!(largest(point.scattering) > 0.0)) return;
+    float radius = parameters.radius;
+    ivec3 low = cell_of(point.position - radius, parameters.side);
+    bvec3 steps = greaterThan(cell_of(point.position + radius, parameters.side), low);
+    uint step_bits = (steps.x ? 1u : 0u) | (steps.y ? 2u : 0u) | (steps.z ? 4u : 0u);
+    uvec2 ranges[8];
+    uint found = 0u, cells = 0u;
+    for (uint corner = 0u; corner < 8u; ++corner) {
+        ranges[corner] = uvec2(0u);
+        if ((corner & ~step_bits) != 0u) continue;
+        ivec3 cell = low + ivec3(corner & 1u, (corner >> 1u) & 1u, corner >> 2u);
+        ranges[corner] = buckets[bucket_of(cell, parameters.buckets)];
+        found += ranges[corner].y - ranges[corner].x;
+        ++cells;
+    }
+    float side = parameters.side;
+    float expected = float(found) * 4.0 / 3.0 * PI * radius * radius * radius / (float(cells) * side * side * side);
+    if (expected > MOST_EXPECTED) radius *= max(pow(MOST_EXPECTED / expected, 1.0 / 3.0), LEAST_RADIUS_FACTOR);
+    Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
+    uint passed = 0u, corner = 0u, next = ranges[0].x;
+    bool any = false;
+    // Candidates before parameters.first_candidate were taken by an earlier dispatch.
+    for (uint rounds = 0u; rounds < parameters.candidates && corner < 8u; ++rounds) {
+        while (corner < 8u && next >= ranges[corner].y) {
+            ++corner;
+            if (corner < 8u) next = ranges[corner].x;
+        }
+        if (corner == 8u) break;
+        if (passed < parameters.first_candidate) {
+            uint skipped = min(parameters.first_candidate - passed, ranges[corner].y - next);
+            passed += skipped;
+            next += skipped;
+            continue;
+        }
+        uvec4 candidate = sorted_photons[next++];
+        vec3 offset = uintBitsToFloat(candidate.xyz) - point.position;
+        float distance2 = dot(offset, offset);
+        if (distance2 >= radius * radius || exceeds_depth(point.depth, candidate.w)) continue;
+        vec3 radiance = photon_radiance(point, candidate.w, distance2, radius);
+        if (!(largest(radiance) > 0.0)) continue;
+        any = true;
+        photons[candidate.w].depth = photons[candidate.w].depth | PHOTON_CONTRIBUTED;
+        collect_splat(collected, candidate.w, radiance, false, 0u);
+    }
+    if (any) write_collected(index, false, collected);
+}

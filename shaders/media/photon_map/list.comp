@@ -1,0 +1,22 @@
+#version 430 core
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lists the photons that media have scattered. Where shadow rays bring direct light, photons straight from a light are
+// left out.
+
+layout(local_size_x = 64) in;
+
+#include <ListMediumPhotonsParameters>
+#include "common/iteration.glsl"
+#include "common/invocation.glsl"
+#include "common/photon.glsl"
+uniform Parameters { ListMediumPhotonsParameters parameters; };
+readonly buffer Photons;
+readonly buffer PhotonRange;
+buffer MediumPhotons;
+
+void main() {
+    uint index = invocation_index();
+    if (index >= min(parameters.count, photon_end) || photons[index].in_medium == 0u) return;
+    if (iteration.next_event != 0u && (photons[index].flags & PHOTON_DIRECT) != 0u) return;
+    medium_photons[atomicAdd(medium_photon_count, 1u)] = index;
+}
