@@ -56,7 +56,7 @@ class Lattice:
                 else:
                     highest = middle
             steps = np.floor(np.maximum(steps / highest, 1.0) + 1e-6)
-        counts = np.ceil(steps - 1e-6).astype(int) + 1
+        counts = np.ceil(steps - 1e-3).astype(int) + 1
         x, y, z = (int(count) for count in counts)
         return cls((x, y, z), np.asarray(low, np.float64), size / (counts - 1))
 

@@ -9,8 +9,7 @@ from ..gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ..gl.context.context import Context
 from ..gl.programs.programs import ProgramLibrary
 from ..scene.scene import Scene
-from .medium_grids import Evaluate as EvaluateVoxels
-from .medium_grids import MediumGrids, PlacedMedium
+from .medium_grids import EvaluateVoxels, MediumGrids, PlacedMedium
 from .medium_places import MediumPlaces
 from .records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
 from .traits.interiors import Evaluate, Interior, Variation
@@ -67,9 +66,11 @@ class MediaTables(BufferSet):
         self.materials = frozenset(filled) | frozenset(varying)
         self._upload(self._even)
 
-    def bake(self, scene: Scene, media: Sequence[PlacedMedium], evaluate: EvaluateVoxels) -> None:
+    def bake(
+        self, scene: Scene, media: Sequence[PlacedMedium], evaluate: EvaluateVoxels, evaluate_once: Evaluate
+    ) -> None:
         """Bake and upload the media that vary: those of ``places``, the world's behind them."""
-        baked = self._grids.bake(scene, list(media), evaluate)
+        baked = self._grids.bake(scene, list(media), evaluate, evaluate_once)
         world = self._even[0] if self.places.world is None else baked.pop()
         self._upload([world, *self._even[1:], *baked])
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Grids of the media whose coefficients vary from place to place, baked on the device."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +11,10 @@ from ..gl.context.context import Context
 from ..gl.programs.programs import ProgramLibrary
 from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
+from ..scene.volumes import Volume
 from .bricks import BrickGrid, Lattice, brick_grid, usable
 from .records import MEDIUM, PHASE_FUNCTION
-from .traits.interiors import Interior, Variation
+from .traits.interiors import Evaluate, Interior, Variation
 
 VOXELS_ALONG = 128
 """Voxels along the longest side of a grid whose object says nothing of its own."""
@@ -23,9 +24,6 @@ MAX_GRID_BYTES = 1 << 30
 """Bytes of all grids on the device, at most."""
 _FEWEST_VOXELS = 8
 """Voxels of a grid, at least."""
-
-Evaluate = Callable[[NodeGraph, Lattice, int, np.ndarray], np.ndarray]
-"""Gives the (bricks, BRICK_VOXELS, 3) float32 coefficient of a graph at a lattice of an instance with a matrix."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +37,13 @@ class PlacedMedium:
     """(4, 4) from that space to the world."""
     instance: int
     """Number of the instance among those with triangles, or WORLD."""
+    spacing: np.ndarray | None
+    """(3,) distances between voxels that its volume has, meters in the space of the object; None without one."""
+    factor: float
+    """Factor of the coefficients, which may be by length in the space of the object."""
+    volume: Volume | None
+    attributes: Mapping[str, tuple[float, ...]]
+    """Values of attributes that the object has as a whole."""
     source: tuple[object, ...]
     """Objects that the coefficients follow from. Media with the very same have the same grid."""
 
@@ -60,8 +65,14 @@ class PlacedMedium:
             return None
         low, high = self.box
         along = VOXELS_ALONG if self.interior.variation > Variation.OBJECT else 2
-        spacing = float(np.max(high - low)) / (along - 1)
+        spacing: float | np.ndarray = float(np.max(high - low)) / (along - 1)
+        if self.spacing is not None:  # whose voxels stay where they are, and may be divided
+            spacing = self.spacing / max(1.0, np.floor(np.min(self.spacing / spacing)))
         return Lattice.of(low, high, spacing, most)
+
+
+EvaluateVoxels = Callable[[NodeGraph, Lattice, PlacedMedium], np.ndarray]
+"""Gives the (bricks, BRICK_VOXELS, 3) float32 coefficient of a graph at a lattice."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +92,7 @@ class BakedMedium:
         to_object = placed.to_object
         if to_object is None:
             return record
-        record["absorption"], record["scattering"], record["emission"] = self.grid.scales
+        record["absorption"], record["scattering"], record["emission"] = placed.factor * self.grid.scales
         record["channels"], record["voxels"], record["first_word"] = self.grid.channels, self.lattice.voxels, first_word
         for row, values in enumerate((self.lattice.to_grid @ to_object)[:3]):
             record[f"to_grid{row}"] = values
@@ -101,14 +112,17 @@ class MediumGrids(BufferSet):
         self._most = 0
         """Voxels of a grid, at most, in the last bake."""
 
-    def bake(self, scene: Scene, media: list[PlacedMedium], evaluate: Evaluate) -> list[tuple[np.void, np.ndarray]]:
+    def bake(
+        self, scene: Scene, media: list[PlacedMedium], evaluate: EvaluateVoxels, evaluate_once: Evaluate
+    ) -> list[tuple[np.void, np.ndarray]]:
         """The MEDIUM record of each medium and its (n,) PHASE_FUNCTION records; their voxels are on the device then.
 
-        Where the voxels of all grids would not fit, they are larger, with a warning in scene.warnings.
+        evaluate_once: gives the inputs of phase functions, which are the same everywhere in a medium. Where the voxels
+        of all grids would not fit, they are larger, with a warning in scene.warnings.
         """
         most = MAX_VOXELS // max(len({medium.key for medium in media}), 1)
         limit = min(self._voxels.limit, MAX_GRID_BYTES) // 4
-        self._bake_all(media, most, evaluate)
+        self._bake_all(media, most, evaluate, evaluate_once)
         if self._word_count > limit:
             scene.warn(
                 f"The grids of volumes need {self._word_count / 2**18:.1f} MiB, but {limit / 2**18:.1f} MiB fit; their "
@@ -117,21 +131,23 @@ class MediumGrids(BufferSet):
         while self._word_count > limit and most > _FEWEST_VOXELS:
             most = min(most, max(int(np.prod(baked.lattice.voxels)) for baked in self._baked.values()))
             most = int(most * min(0.7, 0.9 * limit / self._word_count))
-            self._bake_all(media, most, evaluate)
+            self._bake_all(media, most, evaluate, evaluate_once)
         return self._upload(media)
 
     @property
     def _word_count(self) -> int:
         return sum(len(baked.grid.words) for baked in self._baked.values())
 
-    def _bake_all(self, media: list[PlacedMedium], most: int, evaluate: Evaluate) -> None:
+    def _bake_all(
+        self, media: list[PlacedMedium], most: int, evaluate: EvaluateVoxels, evaluate_once: Evaluate
+    ) -> None:
         before, self._baked = self._baked if most == self._most else {}, {}
         self._most = most
         for placed in media:
             lattice = placed.lattice(most)
             if placed.key not in self._baked and lattice is not None:
                 known = before.get(placed.key)
-                self._baked[placed.key] = known or _baked(placed, lattice, evaluate)
+                self._baked[placed.key] = known or _baked(placed, lattice, evaluate, evaluate_once)
 
     def _upload(self, media: list[PlacedMedium]) -> list[tuple[np.void, np.ndarray]]:
         firsts, parts, end = {}, [np.zeros(1, np.uint32)], 1
@@ -150,9 +166,9 @@ class MediumGrids(BufferSet):
         return found
 
 
-def _baked(placed: PlacedMedium, lattice: Lattice, evaluate: Evaluate) -> BakedMedium:
+def _baked(placed: PlacedMedium, lattice: Lattice, evaluate: EvaluateVoxels, evaluate_once: Evaluate) -> BakedMedium:
     def coefficient(graph: NodeGraph | None) -> np.ndarray | None:
-        return None if graph is None else usable(evaluate(graph, lattice, placed.instance, placed.matrix))
+        return None if graph is None else usable(evaluate(graph, lattice, placed))
 
     interior = placed.interior
     functions = PHASE_FUNCTION.zeros(len(interior.scattering))
@@ -161,7 +177,7 @@ def _baked(placed: PlacedMedium, lattice: Lattice, evaluate: Evaluate) -> BakedM
         values = coefficient(part.coefficient)
         assert values is not None
         function["scattering"] = values.mean(axis=(0, 1), dtype=np.float64)
-        function["kind"], function["parameters"] = part.kind, part.parameters
+        function["kind"], function["parameters"] = part.kind, part.parameters(evaluate_once)
         scattering = values if scattering is None else scattering + values
     coefficients = coefficient(interior.absorption), scattering, coefficient(interior.emission)
     return BakedMedium(placed.source, lattice, brick_grid(coefficients), functions)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..scene.meshes import Instance, Mesh
 from ..scene.scene import Scene
+from ..scene.volumes import Volume
 from .medium_grids import PlacedMedium
 from .records import MAX_MEDIA
 from .traits.interiors import Interior, Variation
@@ -83,7 +84,18 @@ class MediumPlaces:
             is_shared = interior.variation is Variation.PLACE_IN_OBJECT and not instance.attributes
             source = (scene.materials[material], mesh, *(() if is_shared else (instance,)), *images)
             box = _box(mesh) if index in numbers else None
-            yield PlacedMedium(interior, box, instance.matrix, numbers.get(index, 0), source)
+            volume, number = mesh.volume, numbers.get(index, 0)
+            yield PlacedMedium(
+                interior,
+                box,
+                instance.matrix,
+                number,
+                None if volume is None else voxel_spacing(volume),
+                _density_factor(instance.matrix) if volume is not None and volume.scales_density else 1.0,
+                volume,
+                instance.attributes,
+                source,
+            )
         if self.world is not None:
             yield self._world_medium(self.world, scene, bounds)
 
@@ -95,7 +107,20 @@ class MediumPlaces:
         if (camera < low).any() or (camera > high).any():
             source = (*source, scene.camera)
         box = np.minimum(low, camera), np.maximum(high, camera)
-        return PlacedMedium(world, box, np.eye(4), WORLD, source)
+        return PlacedMedium(world, box, np.eye(4), WORLD, None, 1.0, None, {}, source)
+
+
+def voxel_spacing(volume: Volume) -> np.ndarray | None:
+    """(3,) distances between the voxels of the finest grid along the axes of the object, meters; None without any."""
+    found = [np.abs(grid.matrix[:3, :3]).max(axis=1) for grid in volume.grids.values() if grid.values.size > 1]
+    usable = [spacing for spacing in found if np.isfinite(spacing).all() and (spacing > 0.0).all()]
+    return min(usable, key=np.prod) if usable else None
+
+
+def _density_factor(matrix: np.ndarray) -> float:
+    """Factor of densities by length in the space of an object, as in Cycles: by the scale along the diagonal."""
+    scale = float(np.linalg.norm(np.asarray(matrix, np.float64)[:3, :3] @ np.full(3, 1.0 / np.sqrt(3.0))))
+    return 1.0 / scale if scale > 0.0 else 1.0
 
 
 def _box(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:

@@ -24,10 +24,12 @@ from .compiler.scene_graphs import NO_EFFECT, SceneGraphs, TextUse, UnattachedGr
 from .evaluation import GraphEvaluator, LightSurface
 from .images import image_records
 from .media import MediaTables
+from .medium_grids import PlacedMedium
 from .records import IMAGE_ENTRY, MATERIAL
 from .traits.emitted import Emits
 from .traits.transparency import passes_shadow_rays
 from .traits.view_dependence import depends_on_view
+from .volume_attributes import VolumeAttributes
 from .voxel_evaluation import VoxelEvaluator
 
 
@@ -73,6 +75,7 @@ class MaterialTables(BufferSet):
     media = Part(MediaTables)
     _evaluator = Part(GraphEvaluator)
     _voxel_evaluator = Part(VoxelEvaluator)
+    _volume_attributes = Part(VolumeAttributes)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
@@ -149,16 +152,27 @@ class MaterialTables(BufferSet):
         if not self.media.places.any:
             return
 
-        def evaluate(graph: NodeGraph, lattice: Lattice, instance: int, matrix: np.ndarray) -> np.ndarray:
+        bound = {**self.blocks, **blocks}
+
+        def evaluate(graph: NodeGraph, lattice: Lattice, placed: PlacedMedium) -> np.ndarray:
             entry, first = self._unattached[id(graph)]
-            bound = {**self.blocks, **blocks}
+            self._volume_attributes.upload(self.attribute_names, placed.volume, placed.attributes)
             try:
-                return self._voxel_evaluator.run(entry.compiled.text, first, bound, scene, lattice, instance, matrix)
+                return self._voxel_evaluator.run(
+                    entry.compiled.text,
+                    first,
+                    bound,
+                    scene,
+                    lattice,
+                    placed.instance,
+                    placed.matrix,
+                    self._volume_attributes.blocks,
+                )
             except CompileError as error:
                 scene.warn(f"{entry.owner}: the driver does not compile its nodes ({first_line(error)}); {NO_EFFECT}")
                 return np.zeros((int(np.prod(lattice.bricks)), BRICK_VOXELS, 3), np.float32)
 
-        self.media.bake(scene, list(self.media.places.media(scene, placed, bounds)), evaluate)
+        self.media.bake(scene, list(self.media.places.media(scene, placed, bounds)), evaluate, self.evaluate)
 
     def follow(self, scene: Scene) -> None:
         """Warn in this scene and evaluate as its camera sees, though what was built may have come with another."""

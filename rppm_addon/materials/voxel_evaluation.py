@@ -55,12 +55,13 @@ class VoxelEvaluator(BufferSet):
         lattice: Lattice,
         instance: int,
         matrix: np.ndarray,
+        attributes: Mapping[str, Bindable],
     ) -> np.ndarray:
         """(bricks, BRICK_VOXELS, 3) float32 emission of a graph at the voxels of a lattice, 0 beyond its ends.
 
         text: the compiled graph; first_constant: where its constants start in the buffer MaterialData; instance: whose
-        object the nodes read, or WORLD; matrix: (4, 4) from the lattice's space to the world. Raises CompileError where
-        the driver does not compile the text.
+        object the nodes read, or WORLD; matrix: (4, 4) from the lattice's space to the world; attributes: the blocks of
+        VolumeAttributes. Raises CompileError where the driver does not compile the text.
         """
         camera, view, origin = scene.camera, scene.camera.matrix.copy(), scene.world_offset
         to_world = np.asarray(matrix, np.float64) @ np.linalg.inv(lattice.to_grid)
@@ -72,7 +73,7 @@ class VoxelEvaluator(BufferSet):
         program = self._library.compute("materials/evaluate_voxels.comp", inserts={"materials/generated.glsl": text})
         bricks = int(np.prod(lattice.bricks))
         self._emissions.require_items(min(bricks, _CHUNK) * BRICK_VOXELS)
-        bound = {**buffers, "Emissions": self._emissions.buffer}
+        bound = {**buffers, **attributes, "Emissions": self._emissions.buffer}
         parts = []
         for first in range(0, bricks, _CHUNK):
             count = min(_CHUNK, bricks - first) * BRICK_VOXELS

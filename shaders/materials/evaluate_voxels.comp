@@ -4,6 +4,9 @@
 
 layout(local_size_x = 64) in;
 
+// Nodes read the grids of a volume.
+#define VOLUME_ATTRIBUTES
+
 #include <EvaluateVoxelsParameters>
 #include "common/invocation.glsl"
 uniform Parameters { EvaluateVoxelsParameters parameters; };
