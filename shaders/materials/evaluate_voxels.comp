@@ -14,7 +14,7 @@ uniform Parameters { EvaluateVoxelsParameters parameters; };
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
-writeonly buffer Emissions { vec4 emissions[]; };
+writeonly buffer Emissions;
 
 #include "materials/generated.glsl"
 

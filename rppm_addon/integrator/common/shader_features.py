@@ -28,13 +28,14 @@ class ShaderFeatures:
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
         """Return the features of a scene, and those that a viewport demands."""
-        volumes = [scene.world.volume, *(material.interior for material in scene.materials)]
+        volumes = [(scene.world.volume, False)]
+        volumes += [(material.interior, material.reads_grids) for material in scene.materials]
         return cls(
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
-            any(volume is not None for volume in volumes),
-            any(Interior.of(volume).varies for volume in volumes),
+            any(volume is not None for volume, _ in volumes),
+            any(Interior.of(volume, reads_grids).varies for volume, reads_grids in volumes),
         )
 
     @property

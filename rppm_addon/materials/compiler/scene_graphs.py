@@ -53,7 +53,7 @@ class SceneGraphs:
             self._compile_surface(material)
         self.displacements = dict(self._compile_displacements())
         """Graphs of the materials that displace, by index of the material."""
-        self.interiors = [Interior.of(material.interior) for material in materials]
+        self.interiors = [Interior.of(material.interior, material.reads_grids) for material in materials]
         """Media inside the surfaces, by index of the material."""
         self.world_interior = Interior.of(scene.world.volume)
         """The medium that fills the world."""

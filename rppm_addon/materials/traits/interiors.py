@@ -40,13 +40,6 @@ _COEFFICIENTS = {"ABSORPTION": _ABSORPTION, "SCATTERING": _SCATTERING, "EMISSION
 _COMBINING = ("mix_shader", "add_shader")
 
 
-_CONSTANT = {"light_path", "uvmap", "random_per_island", "tangent", "strand_value", "hair_info", "round_size"}
-"""Nodes about surfaces, which give the same everywhere in a volume."""
-_BY_OBJECT = {"object_info", "particle_info"}
-_BY_PLACE_IN_OBJECT = {("tex_coord", "object"), ("generated_coord", "generated")}
-"""Kinds of nodes, and outputs of theirs, that know no other place than that in the object."""
-
-
 class Variation(enum.IntEnum):
     """Variables on which the coefficients of a medium depend; each includes those before it."""
 
@@ -57,6 +50,15 @@ class Variation(enum.IntEnum):
     """The place in the space of the object, or an attribute there."""
     PLACE = 3
     """The place in the world."""
+
+
+_CONSTANT = {"light_path", "uvmap", "random_per_island", "tangent", "strand_value", "hair_info", "round_size"}
+"""Nodes about surfaces, which give the same everywhere in a volume."""
+_BY_OBJECT = {"object_info", "particle_info"}
+_ATTRIBUTES = {"attribute": Variation.OBJECT, "grid_attribute": Variation.NOTHING}
+"""Nodes that read grids where there are any, and what they depend on elsewhere."""
+_BY_PLACE_IN_OBJECT = {("tex_coord", "object"), ("generated_coord", "generated")}
+"""Kinds of nodes, and outputs of theirs, that know no other place than that in the object."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -110,19 +112,19 @@ class Interior:
         return self.coefficients + [part.inputs for part in self.scattering if isinstance(part.inputs, NodeGraph)]
 
     @classmethod
-    def of(cls, graph: NodeGraph | None) -> "Interior":
-        """The medium that a graph of a volume makes."""
+    def of(cls, graph: NodeGraph | None, reads_grids: bool = False) -> "Interior":
+        """The medium that a graph of a volume makes. reads_grids: whether its attributes may be grids of voxels."""
         if graph is None:
             return cls()
         if any(node.kind not in KINDS for node in graph.nodes):
             return cls(graph)  # which whoever compiles it reports
         medium = cls(_sum(graph, "ABSORPTION"), _sum(graph, "EMISSION"), tuple(_scattering(graph)))
-        varied = max(map(variation, medium.coefficients), default=Variation.NOTHING)
+        varied = max((variation(each, reads_grids) for each in medium.coefficients), default=Variation.NOTHING)
         return dataclasses.replace(medium, variation=varied)
 
 
-def variation(graph: NodeGraph) -> Variation:
-    """Return the variables on which the volume of a graph depends."""
+def variation(graph: NodeGraph, reads_grids: bool = False) -> Variation:
+    """Return the variables on which the volume of a graph depends. reads_grids: as for Interior.of."""
     nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
     asked = {
         (graph.nodes[value.node].kind, value.output)
@@ -130,15 +132,17 @@ def variation(graph: NodeGraph) -> Variation:
         for value in node.inputs.values()
         if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
     }
-    return max((_variation_of(kind, output) for kind, output in asked), default=Variation.NOTHING)
+    return max((_variation_of(kind, output, reads_grids) for kind, output in asked), default=Variation.NOTHING)
 
 
-def _variation_of(kind: str, output: str) -> Variation:
+def _variation_of(kind: str, output: str, reads_grids: bool) -> Variation:
     if kind in _CONSTANT:
         return Variation.NOTHING
     if kind in _BY_OBJECT:
         return Variation.OBJECT
-    if kind in ("attribute", "grid_attribute", "tex_image") or (kind, output) in _BY_PLACE_IN_OBJECT:
+    if kind in _ATTRIBUTES and not reads_grids:
+        return _ATTRIBUTES[kind]
+    if kind in _ATTRIBUTES or kind == "tex_image" or (kind, output) in _BY_PLACE_IN_OBJECT:
         return Variation.PLACE_IN_OBJECT
     return Variation.PLACE
 

@@ -42,7 +42,7 @@ def smoke() -> Material:
     graph = NodeGraph()
     density = graph.add("attribute", "fac", attribute="density")
     graph.surface = graph.add("volume_absorption", "volume", color=(0.8, 0.5, 0.0), density=density)
-    return Material("smoke", material("clear", Lobe(LobeKind.TRANSPARENT)).graph, graph)
+    return Material("smoke", material("clear", Lobe(LobeKind.TRANSPARENT)).graph, graph, reads_grids=True)
 
 
 def scene_of(volume: Volume, surface: Material | None = None, matrix: np.ndarray | None = None, **settings) -> Scene:
@@ -104,7 +104,7 @@ def test_a_grid_that_lacks_leaves_principled_volumes_even(renderer):
     graph = NodeGraph()
     grid = graph.add("grid_attribute", "fac", attribute="density")
     graph.surface = graph.add("volume_principled", "volume", color=(0.0, 0.0, 0.0), density=0.5, density_grid=grid)
-    surface = Material("smoke", material("clear", Lobe(LobeKind.TRANSPARENT)).graph, graph)
+    surface = Material("smoke", material("clear", Lobe(LobeKind.TRANSPARENT)).graph, graph, reads_grids=True)
     seen = picture(renderer, scene_of(Volume({}), surface, iterations=1))
     np.testing.assert_allclose(seen, np.exp(-0.5 * STEP * (VOXELS - 1)), rtol=1e-3)
     found = picture(renderer, scene_of(Volume({"density": grid_of(lambda at: np.ones(at.shape[:3]))}), surface))

@@ -26,7 +26,7 @@ class MaterialTable:
         self._context = context
         self._places: dict[int, int] = {}
         self._of_volumes: dict[int, int] = {}
-        """Places of materials without a surface, for volume objects, by the places of the whole materials."""
+        """Places of materials as they are on volumes, by those of the materials."""
         self._on_round_shapes: set[int] = set()
         """Places of those that are on strands or points."""
         self.untracked: set[int] = set()
@@ -45,13 +45,10 @@ class MaterialTable:
         return self._places[key]
 
     def of_volume(self, place: int) -> int:
-        """Index of a material as it is in a volume object, which has no surface."""
-        material = self.materials[place]
-        if material.graph.surface is None or _is_boundary(material.graph):
-            return place
+        """Index of a material as it is on a volume, which has no surface but grids."""
         if place not in self._of_volumes:
             self._of_volumes[place] = len(self.materials)
-            self.materials.append(_without_surface(material))
+            self.materials.append(_of_volume(self.materials[place]))
             self.attributes.append({})
         return self._of_volumes[place]
 
@@ -71,7 +68,7 @@ class MaterialTable:
         before = self.attributes[place], self.sampled
         self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
         if place in self._of_volumes:
-            self.materials[self._of_volumes[place]] = _without_surface(exported)
+            self.materials[self._of_volumes[place]] = _of_volume(exported)
         self.sampled |= _sampled_of(exported)
         return (self.attributes[place], self.sampled) != before
 
@@ -86,14 +83,10 @@ class MaterialTable:
         return exported
 
 
-def _is_boundary(graph: NodeGraph) -> bool:
-    return graph.surface is not None and graph.nodes[graph.surface.node].kind == "volume_boundary"
-
-
-def _without_surface(material: Material) -> Material:
+def _of_volume(material: Material) -> Material:
     graph = NodeGraph()
     graph.surface = graph.add("volume_boundary", "bsdf")
-    return dataclasses.replace(material, graph=graph)
+    return dataclasses.replace(material, graph=graph, reads_grids=True)
 
 
 def _attributes_of(material: Material) -> dict[str, str]:
