@@ -10,6 +10,9 @@
 #include "common/path_history.glsl"
 #include "common/path_depth.glsl"
 #include "common/surface_tolerance.glsl"
+#ifdef MEDIA
+#include "common/volume_bounces.glsl"
+#endif
 readonly buffer PhotonOrigins;
 
 // An importon, by its number: its members are read where they are asked for, since processors have no registers for
@@ -82,6 +85,9 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
 // Whether light has been scattered more often than any or its own is to, from what it lights first to the camera, or
 // has passed more transparent surfaces.
 bool exceeds_depth(uint importon_history, uint photon_number) {
+#ifdef MEDIA
+    if (!within_volume_bounces(photons[photon_number].medium_vertices, photons[photon_number].flags, 0u)) return true;
+#endif
     uint depth = arrived_depth(importon_history) + (photons[photon_number].depth & DEPTH_MASK);
     uint most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u)

@@ -5,6 +5,7 @@
 #include <PhotonHistory>
 #include <PhotonNumbers>
 #include <MediumScattering>
+#include <PhotonsInMedia>
 
 uint photon_path_of(uint word) { return word & ((1u << PHOTON_SEGMENT_SHIFT) - 1u); }
 

@@ -22,7 +22,8 @@ float cosine_of_difference(float cosine, float less_cosine) {
     return cosine > less_cosine ? 1.0 : cosine * less_cosine + sine_of(cosine) * sine_of(less_cosine);
 }
 
-// Where light is asked for: one side of the surface may be all that it can reach; in a light set.
+// Where light is asked for: one side of the surface may be all that it can reach; in a light set. A point in a medium
+// has a null normal.
 struct LitPoint {
     vec3 position;
     vec3 normal;
@@ -37,10 +38,6 @@ uint light_set_at(uint triangle) {
 }
 
 float facing(LitPoint point, vec3 direction) {
-#ifdef MEDIA
-    // In a medium there is no surface, and light from all sides is scattered.
-    if (point.normal == vec3(0.0)) return 1.0;
-#endif
     float cosine = dot(point.normal, direction);
     return point.both_sides ? abs(cosine) : cosine;
 }
@@ -52,6 +49,10 @@ float node_importance(LightNode node, LitPoint point) {
     float distance2 = dot(to_center, to_center), radius2 = dot(half_size, half_size);
     if (distance2 <= radius2 * 1.0001) return node.intensity / max(radius2, 1e-20);
     vec3 direction = to_center * inversesqrt(distance2);
+#ifdef MEDIA
+    // The point stands for all points of a ray in a medium, which see the lights from other sides.
+    if (point.normal == vec3(0.0)) return node.intensity / distance2;
+#endif
     float cosine_bounds = sqrt(1.0 - radius2 / distance2);
     float received = cosine_of_difference(facing(point, direction), cosine_bounds);
     float leaving = -dot(node.axis, direction);
@@ -71,6 +72,9 @@ float tree_importance(uint first, uint leaves, LitPoint point) {
 
 float sun_importance(LightNode sun, LitPoint point) {
     if (!has_set(sun.light_sets, point.light_set)) return 0.0;
+#ifdef MEDIA
+    if (point.normal == vec3(0.0)) return sun.intensity;
+#endif
     return sun.intensity * max(0.0, cosine_of_difference(facing(point, -sun.axis), sun.cosine_normals));
 }
 

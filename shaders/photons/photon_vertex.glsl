@@ -75,6 +75,6 @@ void store_photon(PhotonVertex vertex) {
     if (stores_photons(vertex)) flags |= PHOTON_STORED;
     float distance = differential.before + closure.distance;
     write_photon(vertex.index, Photon(closure.position, flags, vertex.flux, closure.geometric_normal, vertex.wo,
-                                      distance, 0u, vertex.depth, 0u, 0u));
+                                      distance, 0u, vertex.depth, photon_paths[vertex.index].medium_vertices, 0u));
     photon_differentials[vertex.index].before = distance;
 }

@@ -21,6 +21,7 @@ _SETTINGS = {
     "transparent_max_bounces": "uint",
     "camera_bounces": "uint",
     "photon_bounces": "uint",
+    "volume_bounces": "uint",
     "film_transparent": "uint",
 }
 """Members that are attributes of RenderSettings, by name and type."""

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: MEDIA=1
 // Photons near the cubemap's center meet every importon of the core list.
 
 layout(local_size_x = 64) in;

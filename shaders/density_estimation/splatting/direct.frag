@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: MEDIA=1
 // A photon meets the importon of one camera pixel.
 
 #include <QuadParameters>

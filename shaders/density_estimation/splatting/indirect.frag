@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: MEDIA=1
 // A photon meets the importons listed in one pixel of the cubemap (paper section 4.2).
 
 #include <QuadParameters>

@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 #include "common/geometry.glsl"
 #include "common/photon.glsl"
 #include "common/path_depth.glsl"
+#include "common/volume_bounces.glsl"
 #include "common/camera_path.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
@@ -49,6 +50,7 @@ struct GatherPoint {
 };
 
 bool exceeds_depth(uint camera_depth, uint photon) {
+    if (!within_volume_bounces(photons[photon].medium_vertices, photons[photon].flags, 1u)) return true;
     uint depth = camera_depth + (photons[photon].depth & DEPTH_MASK), most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u)
         most = min(most, photon_origins[photon_path_of(photons[photon].path)].max_bounces);

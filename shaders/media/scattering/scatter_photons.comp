@@ -16,6 +16,7 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/sampling.glsl"
 #include "photons/scattered_flags.glsl"
+#include "common/volume_bounces.glsl"
 uniform Parameters { ScatterInMediaParameters parameters; };
 readonly buffer Materials;
 readonly buffer Media;
@@ -34,7 +35,7 @@ void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, ve
     uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT));
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
-               path.depth, 1u, 0u);
+               path.depth, path.medium_vertices | PHOTON_IN_MEDIUM, 0u);
 }
 
 vec3 turned(vec3 direction, float cosine, float angle) {
@@ -54,7 +55,10 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
     float survival = min(largest(flux) / largest(path.flux), 1.0);
     float angle = 2.0 * PI * next_random(random);
     bool survives = next_random(random) < survival;
-    if (bounces_of(path.depth) >= iteration.photon_bounces) {
+    uint medium_vertices = path.medium_vertices + 1u;
+    if (medium_vertices == 1u && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) medium_vertices |= FIRST_MEDIUM_LIT;
+    if (bounces_of(path.depth) >= iteration.photon_bounces
+        || !within_volume_bounces(medium_vertices, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
         survives = false;
     }
@@ -66,6 +70,7 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
                                 | PATH_SCATTERED_IN_MEDIUM;
     photon_paths[index].flux = survives ? flux / survival : vec3(0.0);
     photon_paths[index].depth += ONE_BOUNCE;
+    photon_paths[index].medium_vertices = medium_vertices;
     photon_differentials[index].known = 0u;
     photon_differentials[index].before = 0.0;
     rays[index] =

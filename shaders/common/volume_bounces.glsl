@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The limit of Volume Bounces, counted from the camera as Cycles does: behind the last bounce in a medium a path takes
+// direct light only. Light that specular surfaces alone have sent there counts as direct. The includer includes
+// common/iteration.glsl and common/photon.glsl before.
+
+uint medium_count(uint medium_vertices) { return medium_vertices & (FIRST_MEDIUM_LIT - 1u); }
+
+// Whether a photon may count at an importon; own_vertices: of the importon, 1 in a medium and 0 on a surface.
+bool within_volume_bounces(uint medium_vertices, uint photon_flags, uint own_vertices) {
+    uint before = medium_count(medium_vertices), count = before + own_vertices;
+    if (count <= iteration.volume_bounces) return true;
+    if (count > iteration.volume_bounces + 1u) return false;
+    if (before > 0u) return (medium_vertices & FIRST_MEDIUM_LIT) != 0u;
+    return (photon_flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
+}
