@@ -13,6 +13,7 @@ uniform Parameters { EvaluateVoxelsParameters parameters; };
 #include <VoxelBricks>
 #include "materials/data.glsl"
 #include "materials/surface.glsl"
+#include "materials/volume_attributes.glsl"
 #include "materials/builder.glsl"
 writeonly buffer Emissions;
 

@@ -76,9 +76,8 @@ vec3 normal_to_object(Surface surface, vec3 n) {
     return vec3(dot(x, n), dot(y, n), dot(z, n)) / dot(at.to_object0.xyz, x);
 }
 
-#ifdef VOLUME_ATTRIBUTES
-#include "materials/volume_attributes.glsl"
-#else
+// Volumes have others (materials/volume_attributes.glsl).
+#ifndef VOLUME_ATTRIBUTES
 // Where an attribute of an instance's mesh lies: a word of its place and one of its components; none: 0.
 uvec2 attribute_place(Surface surface, uint layer) {
     if (surface.triangle == NO_TRIANGLE) return uvec2(0u);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Attributes of a volume, which are grids of voxels (rppm_addon/materials/volume_attributes.py). materials/surface.glsl
-// includes this file in place of attributes of meshes.
+// Attributes of a volume, which are grids of voxels (rppm_addon/materials/volume_attributes.py), in place of those of
+// meshes in materials/surface.glsl. The includer defines VOLUME_ATTRIBUTES and includes that file before.
 
-#ifdef VOLUME_ATTRIBUTES
 #include <VolumeGridEntry>
 readonly buffer VolumeGrids { VolumeGridEntry volume_grids[]; };
 readonly buffer VolumeValues { float volume_values[]; };
@@ -37,4 +36,3 @@ vec4 attribute_value(Surface surface, uint layer) {
     }
     return sum;
 }
-#endif
