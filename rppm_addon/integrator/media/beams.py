@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Photon beams: the ways of photons through thin media, drawn onto the camera's raster (Jarosz et al. 2011)."""
 
-
 import numpy as np
 
 from ...gl.buffer_sets import ComputeShader, StorageBuffer
@@ -94,7 +93,9 @@ class PhotonBeams(Stage):
     memory_group = "media"
     remedy = "lower the resolution or the photons per iteration"
     beams = StorageBuffer("photon beams", PHOTON_BEAM, header="uvec4", block="PhotonBeams")
-    _targets = StorageBuffer("targets of photon beams", BEAM_TARGET, band_pixels, header="uvec4", block="BeamTargets", zeroed=True)
+    _targets = StorageBuffer(
+        "targets of photon beams", BEAM_TARGET, band_pixels, header="uvec4", block="BeamTargets", zeroed=True
+    )
     _find_targets = ComputeShader("media/beams/targets.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:

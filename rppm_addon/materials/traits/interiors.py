@@ -2,6 +2,7 @@
 """Node graphs of volumes, taken apart into the coefficients and the phase functions of a medium."""
 
 import dataclasses
+import enum
 from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
@@ -12,7 +13,7 @@ from ..nodes import KINDS
 from ..nodes.volumes import PHASES
 from ..phase_functions import HENYEY_GREENSTEIN, MODELS, Parameters, PhaseModel
 from ..records import PhaseFunctionKind
-from .emitted import is_positive, light_variation, reachable
+from .emitted import is_positive, reachable
 
 Evaluate = Callable[[NodeGraph], np.ndarray]
 """Gives the (height, width, 3) float32 "emission" of a node graph."""
@@ -58,6 +59,27 @@ _READ: dict[tuple[str, str], frozenset[str]] = {
 _COMBINING = ("mix_shader", "add_shader")
 
 
+class Variation(enum.IntEnum):
+    """Variables on which the coefficients of a medium depend; each includes those before it."""
+
+    NOTHING = 0
+    OBJECT = 1
+    """The object that the medium is in."""
+    PLACE_IN_OBJECT = 2
+    """The place in the space of the object, or an attribute there."""
+    PLACE = 3
+    """The place in the world."""
+
+
+_CONSTANT = {"light_path", "uvmap", "random_per_island", "tangent", "strand_value", "hair_info", "round_size"}
+"""Nodes about surfaces, which give the same everywhere in a volume."""
+_BY_OBJECT = {"object_info", "particle_info"}
+_ATTRIBUTES = {"attribute": Variation.OBJECT, "grid_attribute": Variation.NOTHING}
+"""Nodes that read grids where there are any, and what they depend on elsewhere."""
+_BY_PLACE_IN_OBJECT = {("tex_coord", "object"), ("generated_coord", "generated")}
+"""Kinds of nodes, and outputs of theirs, that know no other place than that in the object."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Scattering:
     """A part of a medium that scatters by one phase function."""
@@ -90,8 +112,12 @@ class Interior:
     emission: NodeGraph | None = None
     """In W/(m^3 sr)."""
     scattering: tuple[Scattering, ...] = ()
-    varies: bool = False
-    """True where the coefficients may depend on the place."""
+    variation: Variation = Variation.NOTHING
+
+    @property
+    def varies(self) -> bool:
+        """Whether the coefficients may differ between places or objects."""
+        return self.variation > Variation.NOTHING
 
     @property
     def coefficients(self) -> list[NodeGraph]:
@@ -107,17 +133,44 @@ class Interior:
     @property
     def phases_vary(self) -> bool:
         """Whether the inputs of phase functions may depend on the place."""
-        return any(isinstance(part.inputs, NodeGraph) and light_variation(part.inputs) for part in self.scattering)
+        return any(
+            isinstance(part.inputs, NodeGraph) and variation(part.inputs) > Variation.OBJECT for part in self.scattering
+        )
 
     @classmethod
-    def of(cls, graph: NodeGraph | None) -> "Interior":
-        """The medium that a graph of a volume makes."""
+    def of(cls, graph: NodeGraph | None, reads_grids: bool = False) -> "Interior":
+        """The medium that a graph of a volume makes. reads_grids: whether its attributes may be grids of voxels."""
         if graph is None:
             return cls()
         if any(node.kind not in KINDS for node in graph.nodes):
             return cls(graph)  # which whoever compiles it reports
         medium = cls(_sum(graph, "ABSORPTION"), _sum(graph, "EMISSION"), tuple(_scattering(graph)))
-        return dataclasses.replace(medium, varies=any(map(light_variation, medium.coefficients)))
+        varied = max((variation(each, reads_grids) for each in medium.coefficients), default=Variation.NOTHING)
+        return dataclasses.replace(medium, variation=varied)
+
+
+def variation(graph: NodeGraph, reads_grids: bool = False) -> Variation:
+    """Return the variables on which the volume of a graph depends. reads_grids: as for Interior.of."""
+    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
+    asked = {
+        (graph.nodes[value.node].kind, value.output)
+        for node in nodes
+        for value in node.inputs.values()
+        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
+    }
+    return max((_variation_of(kind, output, reads_grids) for kind, output in asked), default=Variation.NOTHING)
+
+
+def _variation_of(kind: str, output: str, reads_grids: bool) -> Variation:
+    if kind in _CONSTANT:
+        return Variation.NOTHING
+    if kind in _BY_OBJECT:
+        return Variation.OBJECT
+    if kind in _ATTRIBUTES and not reads_grids:
+        return _ATTRIBUTES[kind]
+    if kind in _ATTRIBUTES or kind == "tex_image" or (kind, output) in _BY_PLACE_IN_OBJECT:
+        return Variation.PLACE_IN_OBJECT
+    return Variation.PLACE
 
 
 def _sum(graph: NodeGraph, coefficient: str) -> NodeGraph | None:

@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // A photon beam meets the camera ray of one pixel (Jarosz et al. 2011, Progressive Photon Beams, eq. 8, with a
 // one-dimensional kernel).
 
@@ -60,6 +61,7 @@ void main() {
     if (!(x2 < 1.0) || exceeds_depth(target.depth, beam)) return;
     float kernel = 0.75 * (1.0 - x2) / radius;
     vec3 radiance = target.throughput * segment_transmittance(target.flags, target.origin, target.direction, distance)
-                    * scattered_phase(target.flags, -cosine) * beam.flux * (kernel * inversesqrt(sine2));
+                    * scattered_phase(target.flags, PlaceOnRay(target.origin, target.direction, distance), -cosine)
+                    * beam.flux * (kernel * inversesqrt(sine2));
     add_beam(pixel, beam, radiance);
 }

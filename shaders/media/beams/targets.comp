@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Camera rays to which photon beams are to add light.
 
 layout(local_size_x = 64) in;
@@ -30,9 +31,7 @@ void main() {
     CameraPath path = camera_paths[index];
     if (!(ray.maximum_distance > 0.0) || !is_straight(path.flags)) return;
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
-    MediumCoefficients medium = path_medium(path.flags);
-    if (!(largest(medium.scattering) > 0.0)) return;
-    if (!is_thin(medium.absorption + medium.scattering, parameters.least_free_path)) return;
+    if (!path_may_scatter(path.flags) || !is_thin(path.flags, parameters.least_free_path)) return;
     float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
     atomicAdd(beam_target_count, 1u);
     beam_targets[index] = BeamTarget(ray.origin, parameters.segment, ray.direction, far, path.throughput, path.flags,

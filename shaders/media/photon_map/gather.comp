@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
 // media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
 // the surface where they begin, and straight camera rays in thin media to photon beams.
@@ -45,6 +46,7 @@ struct GatherPoint {
     vec3 direction;  // of the camera ray
     vec3 weight;     // throughput and transmittance over the pdf of the distance, m
     vec3 scattering;
+    PlaceOnRay at;
     uint flags;
     uint depth;
 };
@@ -61,19 +63,20 @@ bool exceeds_depth(uint camera_depth, uint photon) {
 vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {
     float cosine = dot(photons[photon].direction, point.direction), inverse = 1.0 / radius;
     float kernel = 15.0 / (8.0 * PI) * (1.0 - distance2 * inverse * inverse) * inverse * inverse * inverse;
-    vec3 phase = scattered_phase(point.flags, cosine) / max(point.scattering, vec3(1e-30));
+    vec3 phase = scattered_phase(point.flags, point.at, cosine) / max(point.scattering, vec3(1e-30));
     return point.weight * phase * photons[photon].flux * kernel;
 }
 
-GatherPoint gather_point(uint index, CameraPath path, Ray ray, MediumCoefficients medium) {
-    vec3 extinction = medium.absorption + medium.scattering;
+GatherPoint gather_point(uint index, CameraPath path, Ray ray) {
     float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
     uvec4 scramble =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_MEDIUM_PHOTONS << 24u));
-    FreeFlight flight = sample_scattered_flight(extinction, far, scrambled_sobol(iteration.number - 1u, scramble));
-    vec3 weight = path.throughput * exp(-extinction * flight.distance) / max(flight.pdf, 1e-30);
-    return GatherPoint(ray.origin + flight.distance * ray.direction, ray.direction, weight, medium.scattering,
-                       path.flags, path.depth);
+    FreeFlight flight = sample_scattered_flight(path.flags, ray, far, scrambled_sobol(iteration.number - 1u, scramble));
+    vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance);
+    vec3 weight = path.throughput * transmittance / max(flight.pdf, 1e-30);
+    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
+    return GatherPoint(ray.origin + flight.distance * ray.direction, ray.direction, weight,
+                       path_medium(path.flags, at).scattering, at, path.flags, path.depth);
 }
 
 void main() {
@@ -83,12 +86,11 @@ void main() {
     CameraPath path = camera_paths[index];
     if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u) return;
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
-    MediumCoefficients medium = path_medium(path.flags);
-    if (!(largest(medium.scattering) > 0.0)) return;
-    if (parameters.draws_beams != 0u && is_straight(path.flags)
-        && is_thin(medium.absorption + medium.scattering, parameters.least_free_path))
+    if (!path_may_scatter(path.flags)) return;
+    if (parameters.draws_beams != 0u && is_straight(path.flags) && is_thin(path.flags, parameters.least_free_path))
         return;
-    GatherPoint point = gather_point(index, path, ray, medium);
+    GatherPoint point = gather_point(index, path, ray);
+    if (!(largest(point.scattering) > 0.0)) return;
     float radius = parameters.radius;
     ivec3 low = cell_of(point.position - radius, parameters.side);
     bvec3 steps = greaterThan(cell_of(point.position + radius, parameters.side), low);

@@ -9,7 +9,7 @@ from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.compiler.scene_graphs import SceneGraphs
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.materials.records import PhaseFunctionKind
-from rppm_addon.materials.traits.interiors import Interior
+from rppm_addon.materials.traits.interiors import Interior, Variation
 from rppm_addon.scene import Camera, Link, Material, NodeGraph, Scene
 
 KIND = PhaseFunctionKind
@@ -176,6 +176,24 @@ def test_grids_that_are_not_there_do_not_vary():
     density = graph.add("grid_attribute", "fac", attribute="density")
     graph.surface = graph.add("volume_principled", "volume", density_grid=density)
     assert not Interior.of(graph).varies
+    assert Interior.of(graph, reads_grids=True).variation is Variation.PLACE_IN_OBJECT
+
+
+@pytest.mark.parametrize(
+    ("kind", "output", "expected"),
+    [
+        ("tex_coord", "object", Variation.PLACE_IN_OBJECT),
+        ("generated_coord", "generated", Variation.PLACE_IN_OBJECT),
+        ("new_geometry", "position", Variation.PLACE),
+        ("object_info", "color", Variation.OBJECT),
+        ("light_path", "ray_length", Variation.NOTHING),
+    ],
+)
+def test_variables_of_a_volume(kind, output, expected):
+    graph = NodeGraph()
+    density = graph.add(kind, output)
+    graph.surface = graph.add("volume_absorption", "volume", density=density)
+    assert Interior.of(graph).variation is expected
 
 
 def test_all_volume_kinds_compile():
