@@ -2,6 +2,7 @@
 """Base class and layout functions that all panels of RPPM in the Properties editor share."""
 
 import textwrap
+from typing import ClassVar
 
 import bpy
 
@@ -13,7 +14,22 @@ _CHARACTER_WIDTH = 7.0
 """Pixels of a letter at a scale of 1, on average."""
 
 
-class RppmPanel:
+class EnginePanel:
+    """Mixed into panels that show for some render engines."""
+
+    COMPAT_ENGINES: ClassVar[set[str]]
+    """Engines for which the panel shows. Each class has a set of its own, which other add-ons may add theirs to."""
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        cls.COMPAT_ENGINES = {ENGINE}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return context.engine in cls.COMPAT_ENGINES
+
+
+class RppmPanel(EnginePanel):
     """Mixed into panels of the render tab; others set ``bl_context``."""
 
     bl_space_type = "PROPERTIES"
@@ -21,10 +37,6 @@ class RppmPanel:
     bl_context = "render"
     is_decorated = False
     """Whether what can be animated has its dot, as in Blender's own panels of objects' data."""
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.engine == ENGINE
 
     def column(self) -> bpy.types.UILayout:
         """A column laid out as Blender's own panels are."""

@@ -6,7 +6,7 @@ import bpy
 from ..render_client.renderer_process import failure
 from ..reports import RenderReport, reports_of
 from ..subjects import Subject, SubjectKind, subjects
-from .base import ENGINE, RppmPanel, letters_across, paragraph, restart_button
+from .base import EnginePanel, RppmPanel, letters_across, paragraph, restart_button
 
 SUBJECTS_SHOWN = 20
 TEXTS_SHOWN = 4
@@ -31,15 +31,11 @@ class RPPM_PT_warnings(RppmPanel, bpy.types.Panel):
         _draw_warnings(self.layout, reports_of(context.scene.session_uid).latest, letters_across(context))
 
 
-class RPPM_PT_viewport_warnings(bpy.types.Panel):
+class RPPM_PT_viewport_warnings(EnginePanel, bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "HEADER"
     bl_label = "Warnings"
     bl_ui_units_x = 16
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return context.engine == ENGINE
 
     def draw(self, context: bpy.types.Context) -> None:
         reports, layout = reports_of(context.scene.session_uid), self.layout

@@ -78,6 +78,16 @@ def test_panels_are_named_and_shown_for_this_engine_only(scene):
     assert len(drawn_panels(PANELS, context_of(scene, **contexts))) >= 20
 
 
+def test_other_engines_add_themselves_to_a_panel(scene):
+    scene.render.engine = "CYCLES"
+    panel = panels.render.RPPM_PT_film
+    panel.COMPAT_ENGINES.add("CYCLES")
+    try:
+        assert [cls.__name__ for cls in PANELS if cls.poll(context_of(scene))] == ["RPPM_PT_film"]
+    finally:
+        panel.COMPAT_ENGINES.remove("CYCLES")
+
+
 def test_settings_of_developers_show_with_developer_extras_alone(scene):
     def shown(extras):
         context = context_of(scene)
