@@ -15,6 +15,7 @@ from .render_tab import (
     render,
     sampling,
     simplify,
+    subdivision,
 )
 
 CLASSES = (
@@ -24,6 +25,7 @@ CLASSES = (
     *sampling.CLASSES,
     *performance.STATUS,
     *render.CLASSES,
+    *subdivision.CLASSES,
     *curves.CLASSES,
     *motion.CLASSES,
     *baking.CLASSES,

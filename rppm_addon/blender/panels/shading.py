@@ -5,6 +5,7 @@ import bpy
 
 from ..colored_glasses import colored_glasses
 from ..export.instances.instance_reader import SURFACE_TYPES
+from . import cycles_properties
 from .base import RppmPanel, letters_across, paragraph
 from .nodes import RppmNodePanel
 
@@ -107,13 +108,18 @@ class RPPM_PT_shadow_terminator(RppmPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         thing = context.object
-        is_there = thing is not None and thing.type in SURFACE_TYPES
-        return super().poll(context) and is_there and hasattr(thing, "shadow_terminator_shading_offset")
+        return super().poll(context) and thing is not None and thing.type in SURFACE_TYPES
 
     def draw(self, context: bpy.types.Context) -> None:
-        column = self.column()
-        column.prop(context.object, "shadow_terminator_geometry_offset", text="Geometry Offset")
-        column.prop(context.object, "shadow_terminator_shading_offset", text="Shading Offset")
+        thing, column = context.object, self.column()
+        if hasattr(thing, "shadow_terminator_shading_offset"):
+            column.prop(thing, "shadow_terminator_geometry_offset", text="Geometry Offset")
+            column.prop(thing, "shadow_terminator_shading_offset", text="Shading Offset")
+        elif cycles_properties.are_there():  # whose properties they are before Blender 5
+            column.prop(thing.cycles, "shadow_terminator_geometry_offset", text="Geometry Offset")
+            column.prop(thing.cycles, "shadow_terminator_offset", text="Shading Offset")
+        else:
+            cycles_properties.draw_remedy(column, "Geometry Offset, Shading Offset")
 
 
 class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
@@ -123,12 +129,13 @@ class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and hasattr(
-            context.world, "cycles_visibility"
-        )  # None has none, nor without Cycles
+        return super().poll(context) and context.world is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(column, "Ray Visibility, Max Bounces")
+            return
         for name in ("camera", "diffuse", "glossy", "transmission"):
             column.prop(context.world.cycles_visibility, name)
         column.separator()
