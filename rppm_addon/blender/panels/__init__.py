@@ -21,8 +21,8 @@ from .render_tab import (
 CLASSES = (
     *cycles_settings.CLASSES,
     *presets.CLASSES,
-    *warnings.CLASSES,
     *sampling.CLASSES,
+    *warnings.CLASSES,
     *performance.STATUS,
     *render.CLASSES,
     *subdivision.CLASSES,

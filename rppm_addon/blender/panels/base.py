@@ -80,8 +80,11 @@ def restart_button(layout: bpy.types.UILayout) -> None:
     layout.operator("rppm.start_renderer", text="Restart", icon="FILE_REFRESH")
 
 
-def paragraph(layout: bpy.types.UILayout, text: str, letters: int, icon: str = "NONE") -> None:
-    """Text on as many lines as it takes with so many letters each."""
+def paragraph(
+    layout: bpy.types.UILayout, text: str, letters: int, icon: str = "NONE", most_lines: int | None = None
+) -> None:
+    """Text on as many lines as it takes with so many letters each, or on ``most_lines``, where it is cut short."""
     column = layout.column(align=True)
-    for number, line in enumerate(textwrap.wrap(text, letters)):
+    lines = textwrap.wrap(text, letters, max_lines=most_lines, placeholder=" ...")
+    for number, line in enumerate(lines):
         column.label(text=line, icon=icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE")

@@ -331,7 +331,7 @@ def test_the_pause_button_shows_in_rendered_viewports(scene):
     reports.record(scene.session_uid, report(RenderKind.VIEWPORT, warnings=('Material "M": is odd', "b")))
     assert shown("RPPM", "RENDERED").popovers == ["RPPM_PT_viewport_warnings"] and not shown("RPPM", "SOLID").popovers
     listed = drawn(panels.warnings.RPPM_PT_viewport_warnings, context_of(scene))
-    assert listed.labels == ["M (1)", "is odd", "b"] and len(listed.operators) == 1
+    assert listed.labels == ["M: is odd", "B", "Names are in the render tab: Warnings"] and len(listed.operators) == 1
     reports.forget()
     reports.record_viewport_error(scene.session_uid, "no lights")
     assert shown("RPPM", "RENDERED").popovers == ["RPPM_PT_viewport_warnings"]

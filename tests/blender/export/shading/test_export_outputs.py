@@ -36,7 +36,7 @@ def test_volume_alone_lets_light_in(scene, material, tree):
     fog = add_node(tree, "ShaderNodeVolumeScatter", "Fog")
     link(tree, added(tree, absorption, fog).outputs[0], tree.nodes["Output"].inputs["Volume"])
     shader, warnings = single_shader(scene, material)
-    assert shader.kind == "bsdf_transparent" and any('"Fog" (VOLUME_SCATTER)' in text for text in warnings)
+    assert shader.kind == "bsdf_transparent" and any('"Fog" (Volume Scatter)' in text for text in warnings)
 
 
 def test_displacement_turns_normals_and_moves_vertices(scene):

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Warnings that say the same of several things, as groups of one line each."""
+
+import itertools
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from .subjects import SubjectKind
+
+FIND_MISSING_FILES = "file.find_missing_files"
+"""Blender's operator that looks for missing files below a folder."""
+
+_KINDS = {
+    "Object": SubjectKind.OBJECT,
+    "Light": SubjectKind.OBJECT,
+    "Camera": SubjectKind.OBJECT,
+    "Material": SubjectKind.MATERIAL,
+    "World": SubjectKind.WORLD,
+}
+_START = re.compile(rf'({"|".join(_KINDS)}) "(.+?)": (?:node "(.+?)" (?:\([^()]*\) )?)?')
+_QUOTED = re.compile(r'"(.+?)"')
+_VARIABLE = re.compile(r'".+?"| \((?:no file|[^()]*[/\\.][^()]*)\)|\d[\d,.]*\d|\d')
+"""Parts of a text that differ within a group: names, files in parentheses, and numbers."""
+_TITLES = (
+    (re.compile(r"needs image .* which is missing"), "missing image", FIND_MISSING_FILES),
+    (re.compile(r"needs image .* cannot read"), "unreadable image", ""),
+    (re.compile(r"has no image "), "texture without an image", ""),
+    (re.compile(r"is a group whose node tree is missing"), "missing node group", ""),
+)
+"""Pattern of a warning, the words that count what it is about, and the operator that is the remedy."""
+
+
+@dataclass(frozen=True)
+class WarnedThing:
+    """One of the things that a group of warnings is about."""
+
+    label: str
+    kind: SubjectKind | None = None
+    """Kind of the subject that can be selected; None if there is none."""
+    name: str = ""
+    """Name of the subject."""
+    node: str = ""
+    """Name of the node of a material or world; empty if none is named."""
+
+
+@dataclass
+class WarningGroup:
+    """Warnings that differ in names and numbers only."""
+
+    identifier: str
+    """Text that all of the group share."""
+    sentence: str
+    """Message about all things, with the remedy. Names and numbers that differ are left out."""
+    noun: str = ""
+    """Words that count the things, in the singular; empty where the sentence itself is the title."""
+    operator: str = ""
+    """Operator of Blender that is the remedy; empty if there is none."""
+    things: list[WarnedThing] = field(default_factory=list)
+    """Things that the warnings are about, each once; empty if none has a name."""
+    count: int = 0
+    """Number of warnings."""
+
+    @property
+    def title(self) -> str:
+        """One line: ``12 missing images``, or the beginning of the sentence and how many things it is said of."""
+        number = max(len(self.things), 1)
+        if self.noun:
+            first, _, rest = self.noun.partition(" ")
+            plural = f"{first}s {rest}" if rest.startswith("without") else f"{self.noun}s"
+            return f"{number} {self.noun if number == 1 else plural}"
+        clause = self.sentence.partition("; ")[0]
+        if number > 1:
+            return f"{clause[:1].upper()}{clause[1:]} ({number})"
+        thing = self.things[0].label if self.things else ""
+        return f"{thing}: {clause}" if thing else f"{clause[:1].upper()}{clause[1:]}"
+
+
+def grouped(warnings: Iterable[str]) -> list[WarningGroup]:
+    """Return warnings as groups, in the order in which the groups' first warnings come."""
+    groups: dict[str, WarningGroup] = {}
+    texts: dict[str, list[str]] = {}
+    for warning in warnings:
+        match = _START.match(warning)
+        text = warning[match.end() :] if match else warning
+        noun, operator = next(((noun, found) for pattern, noun, found in _TITLES if pattern.match(text)), ("", ""))
+        if match and match[3]:
+            text = f"the node {text}"
+        identifier = _VARIABLE.sub("...", text)
+        texts.setdefault(identifier, []).append(text)
+        group = groups.setdefault(identifier, WarningGroup(identifier, text, noun, operator))
+        group.count += 1
+        thing = _thing(match, text, bool(operator or noun.endswith("image")))
+        if thing is not None and all(thing.label != other.label for other in group.things):
+            group.things.append(thing)
+    for identifier, group in groups.items():
+        group.sentence = _common(texts[identifier])
+    return list(groups.values())
+
+
+def _common(texts: list[str]) -> str:
+    """Return the text of a group's warnings, without the names, files and numbers that differ."""
+    fixed = _VARIABLE.split(texts[0])
+    variable = zip(*map(_VARIABLE.findall, texts), strict=True)
+    parts = [found[0] if len(set(found)) == 1 else "" if found[0].startswith(" ") else "..." for found in variable]
+    return "".join(itertools.chain.from_iterable(itertools.zip_longest(fixed, parts, fillvalue="")))
+
+
+def _thing(match: re.Match | None, text: str, is_about_image: bool) -> WarnedThing | None:
+    """Return what a warning is about: the image that it names, or the subject at its beginning and the node."""
+    if match is None:
+        return None
+    kind, name, node = _KINDS[match[1]], match[2], match[3] or ""
+    image = _QUOTED.search(text) if is_about_image else None
+    label = image[1] if image else f"{name}, {node}" if node else name
+    return WarnedThing(label, kind, name, node)
