@@ -55,9 +55,12 @@ def rendered_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
     return (width, height) if region is None else (region[2] - region[0], region[3] - region[1])
 
 
-def length_text(scene: bpy.types.Scene, meters: float) -> str:
-    """A length in the scene's units, with three digits."""
-    return bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", meters, precision=3).strip()
+def length_text(scene: bpy.types.Scene, length: float) -> str:
+    """A length of Blender's units in the units that the scene shows, with three digits."""
+    units = scene.unit_settings
+    if units.system == "NONE":
+        return f"{length:.3g} units"
+    return bpy.utils.units.to_string(units.system, "LENGTH", units.scale_length * length, precision=3).strip()
 
 
 def letters_across(context: bpy.types.Context) -> int:

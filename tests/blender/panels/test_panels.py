@@ -193,6 +193,22 @@ def test_the_radius_is_that_of_equations_2_and_3(scene):
     reports.record(scene.session_uid, report(RenderKind.VIEWPORT))
     labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
     assert labels[-2:] == ["Rendered", "1.2 cm in sample 8"]
+    scene.unit_settings.scale_length = 0.001  # units of a millimeter
+    assert drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels[-1] == "12 µm in sample 8"
+    scene.unit_settings.system = "NONE"
+    assert drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels[-1] == "0.012 units in sample 8"
+
+
+def test_samples_come_first(scene):
+    """The panels inside show samples and noise threshold; how light is estimated comes below."""
+    names = [cls.__name__ for cls in panels.CLASSES if getattr(cls, "bl_parent_id", "") == "RPPM_PT_sampling"]
+    assert drawn(panels.sampling.RPPM_PT_sampling, context_of(scene)).properties == []
+    assert names == [
+        f"RPPM_PT_{name}" for name in ("sampling_viewport", "sampling_final", "light_estimation", "advanced")
+    ]
+    for panel in (panels.sampling.RPPM_PT_sampling_viewport, panels.sampling.RPPM_PT_sampling_final):
+        shown = drawn(panel, context_of(scene)).properties
+        assert [name.removeprefix("preview_") for name in shown[1:3]] == ["adaptive_threshold", "samples"]
 
 
 def test_expected_memory(scene):

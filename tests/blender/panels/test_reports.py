@@ -184,8 +184,8 @@ def test_nothing_that_is_reported_is_saved(facing, tmp_path):
 
 def missing_image(material, image):
     return (
-        f'Material "{material}": node "Image Texture" needs image "{image}", which is missing (//{image}); find it with '
-        "File > External Data > Find Missing Files; magenta stands in"
+        f'Material "{material}": node "Image Texture" needs image "{image}", which is missing (//{image}); find it '
+        "with File > External Data > Find Missing Files; magenta stands in"
     )
 
 

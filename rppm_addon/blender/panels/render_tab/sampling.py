@@ -20,14 +20,7 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
         RPPM_PT_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
-        column = self.column()
-        column.prop(settings, "direct_light", text="Direct")
-        column.prop(settings, "use_final_gather")
-        if RPPM_OT_copy_from_cycles.poll(context):
-            row = column.row(align=True)
-            row.operator(RPPM_OT_copy_from_cycles.bl_idname)
-            row.operator(RPPM_OT_copy_to_cycles.bl_idname)
+        """All is in the panels inside, samples first."""
 
 
 def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: bool) -> None:
@@ -102,6 +95,16 @@ class RPPM_PT_sampling_final_denoise(_DenoisePanel, bpy.types.Panel):
     bl_parent_id = "RPPM_PT_sampling_final"
 
 
+class RPPM_PT_light_estimation(RppmPanel, bpy.types.Panel):
+    bl_label = "Light Estimation"
+    bl_parent_id = "RPPM_PT_sampling"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.scene.rppm, "direct_light", text="Direct")
+        column.prop(context.scene.rppm, "use_final_gather")
+
+
 class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
     bl_label = "Advanced"
     bl_parent_id = "RPPM_PT_sampling"
@@ -109,9 +112,14 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
-        row = self.column().row(align=True)
+        column = self.column()
+        row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
+        if RPPM_OT_copy_from_cycles.poll(context):
+            row = column.row(align=True)
+            row.operator(RPPM_OT_copy_from_cycles.bl_idname)
+            row.operator(RPPM_OT_copy_to_cycles.bl_idname)
 
 
 CLASSES = (
@@ -120,5 +128,6 @@ CLASSES = (
     RPPM_PT_sampling_viewport_denoise,
     RPPM_PT_sampling_final,
     RPPM_PT_sampling_final_denoise,
+    RPPM_PT_light_estimation,
     RPPM_PT_advanced,
 )
