@@ -82,8 +82,8 @@ def status_text(status: SessionStatus, is_paused: bool, radius: str, letters: in
         letters: number of letters that fit; the line has fewer parts where it would be longer.
     """
     progress, compilation = status.progress, status.compilation
-    if progress is None and compilation.started:
-        return f"Compiling {compilation.started} of {compilation.needed}: {compilation.program}"
+    if progress is None and compilation.fraction is not None:
+        return f"Compiling shaders: {compilation.fraction:.0%}"
     if progress is None:
         return "Compiling shaders and building the scene"
     if is_paused or status.settled:

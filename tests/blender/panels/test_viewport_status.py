@@ -25,7 +25,7 @@ UNDER_WAY = SessionStatus(1, progress=PROGRESS, photon_statistics=PHOTONS)
     ("status", "is_paused", "letters", "text"),
     [
         (SessionStatus(), False, 99, "Compiling shaders and building the scene"),
-        (SessionStatus(compilation=CompilationProgress("resolve", 2, 9)), False, 99, "Compiling 2 of 9: resolve"),
+        (SessionStatus(compilation=CompilationProgress(0.254)), False, 99, "Compiling shaders: 25%"),
         (UNDER_WAY, False, 99, "Sample 3/8 | 1.00 k photons/s | Noise 0.5 of 0.1 | Radius 1 cm"),
         (UNDER_WAY, False, 40, "Sample 3/8 | 1.00 k photons/s"),
         (UNDER_WAY, False, 1, "Sample 3/8"),
