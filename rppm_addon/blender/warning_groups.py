@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from bpy.app.translations import pgettext_iface as iface_
+
 from .subjects import SubjectKind
 
 FIND_MISSING_FILES = "file.find_missing_files"
@@ -19,16 +21,17 @@ _KINDS = {
     "World": SubjectKind.WORLD,
 }
 _START = re.compile(rf'({"|".join(_KINDS)}) "(.+?)": (?:node "(.+?)" (?:\([^()]*\) )?)?')
-_QUOTED = re.compile(r'"(.+?)"')
+_IMAGE = re.compile(r'the node needs image "(.+?)"')
 _VARIABLE = re.compile(r'".+?"| \((?:no file|[^()]*[/\\.][^()]*)\)|\d[\d,.]*\d|\d')
 """Parts of a text that differ within a group: names, files in parentheses, and numbers."""
 _TITLES = (
-    (re.compile(r"needs image .* which is missing"), "missing image", FIND_MISSING_FILES),
-    (re.compile(r"needs image .* cannot read"), "unreadable image", ""),
-    (re.compile(r"has no image "), "texture without an image", ""),
-    (re.compile(r"is a group whose node tree is missing"), "missing node group", ""),
+    (re.compile(r"needs image .* which is missing"), ("{} missing image", "{} missing images"), FIND_MISSING_FILES),
+    (re.compile(r"needs image .* cannot read"), ("{} unreadable image", "{} unreadable images"), ""),
+    (re.compile(r"has no image "), ("{} texture without an image", "{} textures without an image"), ""),
+    (re.compile(r"is a group whose node tree is missing"), ("{} missing node group", "{} missing node groups"), ""),
 )
-"""Pattern of a warning, the words that count what it is about, and the operator that is the remedy."""
+"""Pattern of a warning, the title for one and for several things, and the operator that is the remedy."""
+_NO_TITLE = ("", "")
 
 
 @dataclass(frozen=True)
@@ -52,8 +55,8 @@ class WarningGroup:
     """Text that all of the group share."""
     sentence: str
     """Message about all things, with the remedy. Names and numbers that differ are left out."""
-    noun: str = ""
-    """Words that count the things, in the singular; empty where the sentence itself is the title."""
+    titles: tuple[str, str] = _NO_TITLE
+    """Title for one thing and for several, with a place for their number; empty where the sentence is the title."""
     operator: str = ""
     """Operator of Blender that is the remedy; empty if there is none."""
     things: list[WarnedThing] = field(default_factory=list)
@@ -65,10 +68,8 @@ class WarningGroup:
     def title(self) -> str:
         """One line: ``12 missing images``, or the beginning of the sentence and how many things it is said of."""
         number = max(len(self.things), 1)
-        if self.noun:
-            first, _, rest = self.noun.partition(" ")
-            plural = f"{first}s {rest}" if rest.startswith("without") else f"{self.noun}s"
-            return f"{number} {self.noun if number == 1 else plural}"
+        if self.titles != _NO_TITLE:
+            return iface_(self.titles[number > 1]).format(number)
         clause = self.sentence.partition("; ")[0]
         if number > 1:
             return f"{clause[:1].upper()}{clause[1:]} ({number})"
@@ -83,14 +84,15 @@ def grouped(warnings: Iterable[str]) -> list[WarningGroup]:
     for warning in warnings:
         match = _START.match(warning)
         text = warning[match.end() :] if match else warning
-        noun, operator = next(((noun, found) for pattern, noun, found in _TITLES if pattern.match(text)), ("", ""))
+        known = ((titles, operator) for pattern, titles, operator in _TITLES if pattern.match(text))
+        titles, operator = next(known, (_NO_TITLE, ""))
         if match and match[3]:
             text = f"the node {text}"
         identifier = _VARIABLE.sub("...", text)
         texts.setdefault(identifier, []).append(text)
-        group = groups.setdefault(identifier, WarningGroup(identifier, text, noun, operator))
+        group = groups.setdefault(identifier, WarningGroup(identifier, text, titles, operator))
         group.count += 1
-        thing = _thing(match, text, bool(operator or noun.endswith("image")))
+        thing = _thing(match, text)
         if thing is not None and all(thing.label != other.label for other in group.things):
             group.things.append(thing)
     for identifier, group in groups.items():
@@ -106,11 +108,11 @@ def _common(texts: list[str]) -> str:
     return "".join(itertools.chain.from_iterable(itertools.zip_longest(fixed, parts, fillvalue="")))
 
 
-def _thing(match: re.Match | None, text: str, is_about_image: bool) -> WarnedThing | None:
+def _thing(match: re.Match | None, text: str) -> WarnedThing | None:
     """Return what a warning is about: the image that it names, or the subject at its beginning and the node."""
     if match is None:
         return None
     kind, name, node = _KINDS[match[1]], match[2], match[3] or ""
-    image = _QUOTED.search(text) if is_about_image else None
+    image = _IMAGE.match(text)
     label = image[1] if image else f"{name}, {node}" if node else name
     return WarnedThing(label, kind, name, node)

@@ -38,7 +38,7 @@ class RecordingLayout:
     def menu(self, menu, text="", icon="NONE"):
         assert hasattr(bpy.types, menu) and icon in ICONS
 
-    def label(self, text="", icon="NONE"):
+    def label(self, text="", icon="NONE", translate=True):
         assert isinstance(text, str) and icon in ICONS
         self.record.labels.append(text)
 

@@ -5,6 +5,7 @@ import textwrap
 from typing import ClassVar
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ...scene.errors import SceneError
 from ..export.camera.camera import crop, frame_size
@@ -59,7 +60,7 @@ def length_text(scene: bpy.types.Scene, length: float) -> str:
     """A length of Blender's units in the units that the scene shows, with three digits."""
     units = scene.unit_settings
     if units.system == "NONE":
-        return f"{length:.3g} units"
+        return iface_("{:.3g} units").format(length)
     return bpy.utils.units.to_string(units.system, "LENGTH", units.scale_length * length, precision=3).strip()
 
 
@@ -70,12 +71,12 @@ def letters_across(context: bpy.types.Context) -> int:
 
 
 def reading(layout: bpy.types.UILayout, name: str, text: str) -> None:
-    """A line with a figure that is computed, laid out as a property is."""
+    """A line with a figure that is computed, laid out as a property is. Blender translates the name alone."""
     split = layout.split(factor=0.4)
     left = split.row()
     left.alignment = "RIGHT"
     left.label(text=name)
-    split.label(text=text)
+    split.label(text=text, translate=False)
 
 
 def restart_button(layout: bpy.types.UILayout) -> None:
@@ -86,8 +87,9 @@ def restart_button(layout: bpy.types.UILayout) -> None:
 def paragraph(
     layout: bpy.types.UILayout, text: str, letters: int, icon: str = "NONE", most_lines: int | None = None
 ) -> None:
-    """Text on as many lines as it takes with so many letters each, or on ``most_lines``, where it is cut short."""
+    """Text in the user's language, on as many lines as it takes with so many letters each, or cut to ``most_lines``."""
     column = layout.column(align=True)
     lines = textwrap.wrap(text, letters, max_lines=most_lines, placeholder=" ...")
     for number, line in enumerate(lines):
-        column.label(text=line, icon=icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE")
+        shown = icon if number == 0 else "BLANK1" if icon != "NONE" else "NONE"
+        column.label(text=line, icon=shown, translate=False)

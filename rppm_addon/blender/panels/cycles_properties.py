@@ -6,6 +6,7 @@ Cycles' defaults, and panels offer to enable it.
 """
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 ADDON = "cycles"
 """Module of Cycles' add-on."""
@@ -17,8 +18,9 @@ def are_there() -> bool:
 
 
 def draw_remedy(layout: bpy.types.UILayout, names: str) -> None:
-    """Draw what takes the place of properties without the add-on: their names, and a button that enables it."""
+    """Draw what takes the place of properties without the add-on: their names, with commas, and a button."""
     column = layout.column(align=True)
-    column.label(text=f"With Cycles' add-on: {names}", icon="INFO")
+    translated = ", ".join(map(iface_, names.split(", ")))
+    column.label(text=iface_("With Cycles' add-on: {}").format(translated), icon="INFO", translate=False)
     button = column.operator("preferences.addon_enable", text="Enable Cycles Render Engine", icon="PLUGIN")
     button.module = ADDON

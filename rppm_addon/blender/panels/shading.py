@@ -2,6 +2,7 @@
 """Panels of the tabs of a material and of the world."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ..colored_glasses import colored_glasses
 from ..export.instances.instance_reader import SURFACE_TYPES
@@ -57,7 +58,7 @@ class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
         row.active = material.rppm.use_dispersion
         row.prop(material.rppm, "abbe_number")
         if colored_glasses(material) is not None:
-            paragraph(column, _COLORED_GLASSES, letters_across(context), icon="INFO")
+            paragraph(column, iface_(_COLORED_GLASSES), letters_across(context), icon="INFO")
             column.operator("rppm.convert_to_dispersion")
 
 

@@ -5,6 +5,7 @@ import textwrap
 import zlib
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ..render_client.renderer_process import failure
 from ..reports import RenderReport, reports_of
@@ -33,19 +34,21 @@ class RPPM_PT_warnings(RppmPanel, bpy.types.Panel):
         return latest is not None and latest.warning_count > 0
 
     def draw_header_preset(self, context: bpy.types.Context) -> None:
-        self.layout.label(text=f"{reports_of(context.scene.session_uid).latest.warning_count} ")
+        count = reports_of(context.scene.session_uid).latest.warning_count
+        self.layout.label(text=f"{count} ", translate=False)
 
     def draw(self, context: bpy.types.Context) -> None:
         report, letters = reports_of(context.scene.session_uid).latest, letters_across(context)
         groups = grouped(report.warnings)
         for group in groups[:GROUPS_SHOWN]:
             header, body = self.layout.panel(f"rppm_{zlib.crc32(group.identifier.encode()):08x}", default_closed=True)
-            header.label(text=group.title, icon="ERROR")
+            header.label(text=group.title, icon="ERROR", translate=False)
             if body is not None:
                 _draw_group(body, group, letters)
         listed = sum(group.count for group in groups[:GROUPS_SHOWN])
         if listed < report.warning_count:
-            self.layout.label(text=f"{report.warning_count - listed} more are in the log", icon="INFO")
+            text = iface_("{} more are in the log").format(report.warning_count - listed)
+            self.layout.label(text=text, icon="INFO", translate=False)
 
 
 def _draw_group(layout: bpy.types.UILayout, group: WarningGroup, letters: int) -> None:
@@ -55,10 +58,11 @@ def _draw_group(layout: bpy.types.UILayout, group: WarningGroup, letters: int) -
     column = layout.column(align=True)
     for thing in group.things[:THINGS_SHOWN]:
         row = column.row()
-        row.label(text=thing.label, icon=_ICONS[thing.kind] if thing.kind is not None else "NONE")
+        icon = _ICONS[thing.kind] if thing.kind is not None else "NONE"
+        row.label(text=thing.label, icon=icon, translate=False)
         _draw_select(row, thing)
     if len(group.things) > THINGS_SHOWN:
-        column.label(text=f"and {len(group.things) - THINGS_SHOWN} more")
+        column.label(text=iface_("and {} more").format(len(group.things) - THINGS_SHOWN), translate=False)
 
 
 def _draw_select(row: bpy.types.UILayout, thing: WarnedThing) -> None:
@@ -90,13 +94,18 @@ def _draw_titles(layout: bpy.types.UILayout, report: RenderReport) -> None:
     column = layout.column(align=True)
     for group in groups[:LINES_OF_POPOVER]:
         row = column.row()
-        row.label(text=textwrap.shorten(group.title, LETTERS_OF_POPOVER, placeholder="..."), icon="ERROR")
+        title = textwrap.shorten(group.title, LETTERS_OF_POPOVER, placeholder="...")
+        row.label(text=title, icon="ERROR", translate=False)
         for thing in group.things[:1]:
             _draw_select(row, thing)
     more = len(groups) - LINES_OF_POPOVER
     if groups:
-        names = "Names are" if more <= 0 else f"{more} more, and names, are"
-        layout.label(text=f"{names} in the render tab: Warnings", icon="INFO")
+        template = (
+            "Names are in the render tab: Warnings"
+            if more <= 0
+            else "{} more, and names, are in the render tab: Warnings"
+        )
+        layout.label(text=iface_(template).format(more), icon="INFO", translate=False)
 
 
 CLASSES = (RPPM_PT_warnings, RPPM_PT_viewport_warnings)

@@ -108,7 +108,7 @@ class ProgramLibrary:
         return self._sources[key]
 
     def compilation_work(self) -> CompilationWork:
-        """Return the work of the programs so far: those are compiled that have run, or were tried in the background."""
+        """Return the work of the programs so far: compiled are those that have run, or were tried in the background."""
         compiler, compiled, known = self._maker.compiler, 0, 0
         for program in self._programs.values():
             length = sum(len(source.text) for source in program.sources)

@@ -70,7 +70,7 @@ def test_an_error_takes_the_place_of_all_else_until_it_is_gone(shown, scene):
 
 
 def test_what_the_process_and_the_export_are_at(shown):
-    assert shown.show(export=ExportProgress(2, 5)) == "Exporting 2 of 5"
+    assert shown.show(export=ExportProgress(2, 5)) == "Exporting: 40%"
     assert shown.show(export=ExportProgress()) == "Exporting"
     shown.process.state = ProcessState.STARTING
     assert shown.show() == "Starting the renderer"

@@ -2,6 +2,7 @@
 """Panels of the render tab on how much is rendered, and their presets."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ....denoising.places import REMEDY
 from ....scene.common.quantities import count_text
@@ -35,7 +36,7 @@ def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: 
     column.prop(settings, f"{prefix}samples", text="Max Samples" if is_on else "Samples")
     least = column.column()
     least.active = is_on
-    automatic = f"Automatic: {export_settings(scene, viewport=viewport).least_iterations}"
+    automatic = iface_("Automatic: {}").format(export_settings(scene, viewport=viewport).least_iterations)
     draw_setting(least, scene, f"{prefix}adaptive_min_samples", "Min Samples", automatic)
 
 
@@ -59,7 +60,8 @@ class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
         column = self.column()
         _draw_samples(column, context.scene, viewport=False)
         photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
-        draw_setting(column, context.scene, "photons", "Photons", f"Automatic: {count_text(photons)}")
+        automatic = iface_("Automatic: {}").format(count_text(photons))
+        draw_setting(column, context.scene, "photons", "Photons", automatic)
         draw_setting(column, context.scene, "time_limit", "Time Limit")
 
 
@@ -76,7 +78,8 @@ class _DenoisePanel(RppmPanel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         if not denoising_libraries():
-            paragraph(self.layout, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="ERROR")
+            text = iface_("Open Image Denoise is not there: {}").format(iface_(REMEDY))
+            paragraph(self.layout, text, letters_across(context), icon="ERROR")
         column = self.column()
         column.active = getattr(settings, f"use_{self.prefix}denoising")
         column.prop(settings, f"{self.prefix}denoising_input_passes", text="Passes")
