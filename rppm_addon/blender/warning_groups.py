@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from bpy.app.translations import pgettext_iface as iface_
 
+from .export.common.report import listed
 from .subjects import SubjectKind
 
 FIND_MISSING_FILES = "file.find_missing_files"
@@ -53,6 +54,8 @@ class WarningGroup:
 
     identifier: str
     """Text that all of the group share."""
+    first: str
+    """First of the warnings, as it is."""
     sentence: str
     """Message about all things, with the remedy. Names and numbers that differ are left out."""
     titles: tuple[str, str] = _NO_TITLE
@@ -77,6 +80,18 @@ class WarningGroup:
         return f"{thing}: {clause}" if thing else f"{clause[:1].upper()}{clause[1:]}"
 
 
+def lines_of(warnings: Iterable[str]) -> list[str]:
+    """Return warnings as they are where they stand alone, and as one line with the first names where they are many."""
+    return [group.first if group.count == 1 else _line(group) for group in grouped(warnings)]
+
+
+def _line(group: WarningGroup) -> str:
+    clause, _, remedy = group.sentence.partition("; ")
+    title = clause[:1].upper() + clause[1:] if group.titles == _NO_TITLE else group.title
+    names = f" ({listed(thing.label for thing in group.things)})" if group.things else ""
+    return f"{title}{names}; {remedy}" if remedy else f"{title}{names}"
+
+
 def grouped(warnings: Iterable[str]) -> list[WarningGroup]:
     """Return warnings as groups, in the order in which the groups' first warnings come."""
     groups: dict[str, WarningGroup] = {}
@@ -90,7 +105,7 @@ def grouped(warnings: Iterable[str]) -> list[WarningGroup]:
             text = f"the node {text}"
         identifier = _VARIABLE.sub("...", text)
         texts.setdefault(identifier, []).append(text)
-        group = groups.setdefault(identifier, WarningGroup(identifier, text, titles, operator))
+        group = groups.setdefault(identifier, WarningGroup(identifier, warning, text, titles, operator))
         group.count += 1
         thing = _thing(match, text)
         if thing is not None and all(thing.label != other.label for other in group.things):

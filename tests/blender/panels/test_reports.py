@@ -18,7 +18,7 @@ from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_allocation, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
 from rppm_addon.blender.subjects import SubjectKind, select
-from rppm_addon.blender.warning_groups import grouped
+from rppm_addon.blender.warning_groups import grouped, lines_of
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.scene import RenderSettings
 from rppm_addon.session.client.client import RendererProcess
@@ -204,6 +204,11 @@ def test_missing_images_are_one_line_with_one_remedy(facing):
     assert record.labels[:2] == ["30 ", "12 missing images"]
     assert identifiers(record) == ["file.find_missing_files", *["rppm.select_subject"] * 12]
     assert grouped(texts[:1])[0].title == "1 missing image"
+    assert lines_of([*texts, "3 % are lost"]) == [
+        '12 missing images ("0.png", "1.png", "10.png" and 9 more); find it with File > External Data > Find Missing '
+        "Files; magenta stands in",
+        "3 % are lost",
+    ]
 
 
 def test_warnings_that_differ_in_names_and_numbers_are_one_group():

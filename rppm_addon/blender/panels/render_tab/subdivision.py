@@ -26,6 +26,7 @@ class RPPM_PT_subdivision(RppmPanel, bpy.types.Panel):
 
 class RPPM_PT_adaptive_subdivision(RppmPanel, bpy.types.Panel):
     bl_label = "Adaptive Subdivision"
+    bl_options = {"DEFAULT_CLOSED"}
     bl_context = "modifier"
 
     @classmethod
