@@ -3,7 +3,7 @@
 // looks the coefficients up with a random offset of up to half a voxel, so that the expected density is that of
 // trilinear interpolation. The includer declares before the block Media. Words of MediumVoxels: for each medium a table
 // of bricks of 8^3 voxels, with the place of each brick's voxels or 0 for a brick without effect, then the voxels, two
-// half floats a word, channel by channel (rppm_addon/materials/bricks.py).
+// half floats a word, channel by channel (rppm_addon/materials/media/bricks.py).
 
 #include "common/half.glsl"
 #include "common/iteration.glsl"

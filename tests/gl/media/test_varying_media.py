@@ -164,7 +164,7 @@ def test_a_density_of_a_million_leaves_nothing(renderer):
 
 
 def test_grids_larger_than_memory_have_larger_voxels(renderer, monkeypatch):
-    monkeypatch.setattr("rppm_addon.materials.medium_grids.MAX_GRID_BYTES", 1 << 16)
+    monkeypatch.setattr("rppm_addon.materials.media.grids.MAX_GRID_BYTES", 1 << 16)
     scene = scene_of(body_of(linear(0, 0.5, 2.0)))
     seen = renderer.render(scene).frame.combined[..., :3]
     assert len(scene.warnings) == 1 and "voxels are made larger" in scene.warnings[0]

@@ -42,7 +42,7 @@ def read_grids(volume: bpy.types.Volume) -> tuple[dict[str, VolumeGrid], list[st
         found, messages = {}, []
         for name in dict.fromkeys(metadata.name for metadata in openvdb.readAllGridMetadata(path)):
             if not _is_velocity(volume, name):
-                grid = _read(openvdb, openvdb.read(path, name), name, messages)
+                grid = _read(openvdb.read(path, name), name, messages)
                 if grid is not None:
                     found[name] = grid
     return found, messages
@@ -68,7 +68,7 @@ def _is_velocity(volume: bpy.types.Volume, name: str) -> bool:
     return name in names - {""}
 
 
-def _read(openvdb: ModuleType, grid: Any, name: str, messages: list[str]) -> VolumeGrid | None:
+def _read(grid: Any, name: str, messages: list[str]) -> VolumeGrid | None:
     """The active part of a grid, with a border of one voxel; None where it has none, or no numbers."""
     value = grid.background
     channels = len(value) if isinstance(value, tuple | list) else 1
