@@ -13,6 +13,7 @@ from ..common.band import MAX_RASTER_PIXELS
 from ..common.iteration import Iteration
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
+from ..density_estimation.radii import shrinkage_in
 from ..density_estimation.splat_sums import SUM_PARAMETERS, SplatSums
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext
@@ -79,13 +80,6 @@ _SEGMENTS = 8
 """Segments of straight camera paths onto which beams are drawn."""
 
 
-def beam_shrinkage(iteration: int, alpha: float) -> float:
-    """Return the radius of a one-dimensional kernel in iteration i >= 1 over that of the first: the product of
-    (k + alpha) / (k + 1), k < i (Knaus and Zwicker 2011, section 5.2)."""
-    k = np.arange(1, iteration)
-    return float(np.exp(np.sum(np.log((k + alpha) / (k + 1)))))
-
-
 class PhotonBeams(Stage):
     """Photon beams of an iteration, and the camera rays that they add light to: those that have come straight from the
     camera. The other rays gather photons at points (photon_map.py)."""
@@ -138,7 +132,7 @@ class PhotonBeams(Stage):
         if not (self.is_on and context.materials.media.scatter):
             return
         self.beam_count = int(self.beams.read(np.uint32, 1)[0])
-        shrinkage = beam_shrinkage(iteration.number, context.settings.alpha)
+        shrinkage = shrinkage_in(1, iteration.number, context.settings.alpha)
         self.radius = _EXPECTED_BEAMS * self._size / (2.0 * max(self.beam_count, 1)) * shrinkage
         self.radius_pixels = max(_FIRST_PIXELS * shrinkage, _FEWEST_PIXELS)
 

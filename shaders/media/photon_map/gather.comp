@@ -38,7 +38,7 @@ readonly buffer Buckets;
 readonly buffer SortedPhotons;
 
 // In dense places the radius shrinks to that of a sphere of so many photons, but not further than to a part of it.
-const float MOST_EXPECTED = 48.0, LEAST_RADIUS_FACTOR = 0.25;
+const float MOST_EXPECTED = 24.0, LEAST_RADIUS_FACTOR = 0.25;
 
 // A point where photons are gathered, and what they count for.
 struct GatherPoint {
