@@ -78,12 +78,22 @@ void scatter_differential(PhotonVertex vertex, BsdfSample bsdf) {
 uint departing_flags(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
     uint flags = vertex.flags | bsdf.flags;
     if (!straight)
-        flags = scattered_flags(flags, bsdf.diffuse)
+        flags = scattered_flags(flags, bsdf.scatter == SCATTER_DIFFUSE)
                 & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (vertex.closure.flags & CLOSURE_SHADOWLESS) == 0u) flags &= ~PHOTON_DIRECT;
     if (bsdf.transmitted) flags = cross_surface(flags, vertex.closure.material, closure_backfacing(vertex.closure));
     return flags;
 }
+
+#ifdef COUNTS_BOUNCES
+#include "common/bounce_limits.glsl"
+
+// The counts of a path behind a vertex. The surface that light comes to first does not count: a camera path ends there.
+uint departing_counts(PhotonVertex vertex, BsdfSample bsdf) {
+    if (bsdf.scatter == SCATTER_NONE || bounces_of(vertex.depth) == 0u) return vertex.bounce_counts;
+    return counted(vertex.bounce_counts, counted_scatter(bsdf.scatter, bsdf.transmitted));
+}
+#endif
 
 // Writes the next ray and the state of the path.
 void spawn_ray(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
@@ -113,6 +123,11 @@ void sample_next_ray(PhotonVertex vertex) {
     bool leaves = bsdf.transmitted ? side < 0.0 : side > 0.0;
     if (!(largest(bsdf.weight) > 0.0 && leaves)) return;
     bool straight = bsdf.direction == -vertex.wo;
+#ifdef COUNTS_BOUNCES
+    uint counts = departing_counts(vertex, bsdf);
+    if (exceed_limits(counts_of(counts))) return;
+    photon_paths[vertex.index].bounce_counts = counts;
+#endif
     if (!straight) bsdf.weight *= adjoint_correction(vertex.wo, bsdf.direction, geometric, bsdf.normal);
     bool is_excluded = ((vertex.flags | bsdf.flags) & bsdf.exclusion_flag) != 0u;
     photon_paths[vertex.index].flux = is_excluded ? vec3(0.0) : vertex.flux * bsdf.weight;

@@ -19,6 +19,8 @@ class ShaderFeatures:
     """Whether materials reflect by the model of Ashikhmin and Shirley."""
     has_portals: bool = False
     """Whether the world's light comes in through portals."""
+    counts_bounces: bool = False
+    """Whether bounces are counted by type."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -27,10 +29,16 @@ class ShaderFeatures:
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
+            scene.settings.limits_bounces_by_type,
         )
 
     @property
     def defines(self) -> dict[str, int]:
         """Macros of the features, for programs."""
-        macros = {"HAIR_LOBES": self.has_hair, "ASHIKHMIN_LOBES": self.has_ashikhmin, "PORTALS": self.has_portals}
+        macros = {
+            "HAIR_LOBES": self.has_hair,
+            "ASHIKHMIN_LOBES": self.has_ashikhmin,
+            "PORTALS": self.has_portals,
+            "COUNTS_BOUNCES": self.counts_bounces,
+        }
         return {name: 1 for name, has in macros.items() if has}

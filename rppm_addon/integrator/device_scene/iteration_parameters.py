@@ -22,6 +22,7 @@ _SETTINGS = {
     "camera_bounces": "uint",
     "photon_bounces": "uint",
     "film_transparent": "uint",
+    "bounce_limits": "uvec4",
 }
 """Members that are attributes of RenderSettings, by name and type."""
 

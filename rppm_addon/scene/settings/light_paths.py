@@ -10,6 +10,9 @@ from .setting_info import setting
 _MOST_BOUNCES = 1024
 MOST_SEGMENTS = 1024
 """Most rays of a path: as many as a photon's record can distinguish."""
+MOST_COUNTED_BOUNCES = 255
+"""Largest number of bounces of a type that paths count."""
+NO_BOUNCE_LIMIT = 0xFFFFFFFF
 _MOST_PASSED = 32
 """Most segments through surfaces that a path does not see, such as objects hidden from the camera; no limit counts
 them."""
@@ -31,6 +34,33 @@ class LightPathSettings(SettingGroup):
         "Max Bounces",
         "Most bounces of light on its way from what it lights first to the camera, as Cycles counts them: those of "
         "photons, of the final gather and of camera rays together. 0 is direct light only",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    diffuse_bounces: int = setting(
+        _MOST_BOUNCES,
+        "Diffuse Bounces",
+        "Most times that light may be scattered by diffuse reflection on its way from what it lights first to the "
+        "camera, as Cycles counts them; from 255 on there is no limit",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    glossy_bounces: int = setting(
+        _MOST_BOUNCES,
+        "Glossy Bounces",
+        "Most times that light may be scattered by glossy reflection and mirrors on its way from what it lights first "
+        "to the camera, as Cycles counts them; from 255 on there is no limit",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    transmission_bounces: int = setting(
+        _MOST_BOUNCES,
+        "Transmission Bounces",
+        "Most times that light may pass glass and translucent surfaces on its way from what it lights first to the "
+        "camera, as Cycles counts them; from 255 on there is no limit",
         minimum=0,
         maximum=_MOST_BOUNCES,
         soft_maximum=64,
@@ -95,6 +125,21 @@ class LightPathSettings(SettingGroup):
         "Look for light from other surfaces along one ray from each point, and take only direct light and caustics "
         "from the photons there: fine noise in place of blotches, slower samples",
     )
+
+    @property
+    def bounce_limits(self) -> tuple[int, int, int, int]:
+        """Most bounces by type, in the order of Scatter; NO_BOUNCE_LIMIT where the limit of all is as strict or counts
+        do not reach it."""
+        limits = (self.diffuse_bounces, self.glossy_bounces, self.transmission_bounces)
+        first, second, third = (
+            limit if limit < min(self.max_bounces, MOST_COUNTED_BOUNCES) else NO_BOUNCE_LIMIT for limit in limits
+        )
+        return first, second, third, NO_BOUNCE_LIMIT
+
+    @property
+    def limits_bounces_by_type(self) -> bool:
+        """Whether a limit by type ends paths that the limit of all bounces does not."""
+        return any(limit != NO_BOUNCE_LIMIT for limit in self.bounce_limits)
 
     @property
     def camera_bounces(self) -> int:

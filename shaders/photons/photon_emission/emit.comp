@@ -94,7 +94,7 @@ void main() {
     if (light.kind == LIGHT_WORLD)
         photon_origins[index] = PhotonOrigin(largest(world_radiance(-emission.direction)),
                                              world_shadow_ray_pdf(-emission.direction), light.max_bounces);
-    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0);
+    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0, 0u);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     float before = distance(left_from, emission.origin);

@@ -11,10 +11,11 @@ def test_from_cycles_and_back(scene):
     cycles, own = scene.cycles, scene.rppm
     cycles.samples, cycles.preview_samples, cycles.time_limit = 300, 40, 12.5
     cycles.seed, cycles.use_animated_seed, cycles.filter_width, cycles.max_bounces = 9, True, 2.0, 5
+    cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces = 4, 3, 12
     cycles.transparent_max_bounces, own.max_camera_bounces, own.max_photon_bounces = 20, 3, 3
     cycles.use_denoising, cycles.denoising_quality, cycles.preview_denoising_start_sample = True, "FAST", 7
     assert bpy.ops.rppm.copy_from_cycles() == {"FINISHED"}
-    assert [getattr(own, name) for name in list(SHARED)[:8]] == [300, 40, 12.5, 9, True, 2.0, 5, 20]
+    assert [getattr(own, name) for name in list(SHARED)[:11]] == [300, 40, 12.5, 9, True, 2.0, 5, 20, 4, 3, 12]
     assert (own.use_denoising, own.denoising_quality, own.preview_denoising_start_sample) == (True, "FAST", 7)
     assert own.max_camera_bounces == own.max_photon_bounces == 1024, "total bounces mean what they mean in Cycles"
     for name, value in {"samples": 7, "seed": 3, "max_bounces": 2, "use_animated_seed": False}.items():

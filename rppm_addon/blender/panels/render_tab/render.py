@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the render tab that show settings, but for those of sampling."""
+"""Panels of the render tab that show settings of radii, animation and film."""
 
 import bpy
 
@@ -8,29 +8,6 @@ from ...export.view_layer.settings import export_settings
 from ...readings import radius_reading
 from ...reports import reports_of
 from ..base import RppmPanel, length_text, reading
-
-
-class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
-    bl_label = "Max Bounces"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
-        column = self.column()
-        column.prop(settings, "max_bounces", text="Total")
-        column.prop(settings, "transparent_max_bounces", text="Transparent")
-        column.prop(settings, "specular_roughness", text="Specular")
-
-
-class RPPM_PT_path_parts(RppmPanel, bpy.types.Panel):
-    bl_label = "Camera and Photons"
-    bl_parent_id = "RPPM_PT_paths"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
-        column = self.column()
-        column.prop(settings, "max_camera_bounces", text="Camera")
-        column.prop(settings, "max_photon_bounces", text="Photon")
 
 
 class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
@@ -80,8 +57,6 @@ class RPPM_PT_film(RppmPanel, bpy.types.Panel):
 
 
 CLASSES = (
-    RPPM_PT_paths,
-    RPPM_PT_path_parts,
     RPPM_PT_radius,
     RPPM_PT_animation,
     RPPM_PT_film,

@@ -7,10 +7,20 @@ from ....gl.buffers.constants import Constants
 from ....gl.buffers.records import Record
 from ....gl.buffers.storage_blocks import StorageBlock
 
-PHOTON_PATH = Record("PhotonPath", flux="vec3", flags="uint", depth="uint", escaped="float", deposited="float")
+PHOTON_PATH = Record(
+    "PhotonPath",
+    flux="vec3",
+    flags="uint",
+    depth="uint",
+    escaped="float",
+    deposited="float",
+    bounce_counts="uint",
+)
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl); its ``depth`` (Depths); and of its flux, W summed over
-the channels, what left the scene and what it still carried to the vertex at which a limit cut it off."""
+the channels, what left the scene and what it still carried to the vertex at which a limit cut it off. ``bounce_counts``
+tell how often lobes of each type have scattered it since the surface that its light lit first
+(shaders/common/bounce_counts.glsl); they are 0 where nobody asks."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
 PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way

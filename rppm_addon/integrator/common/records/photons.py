@@ -15,14 +15,14 @@ PHOTON = Record(
     distance="float",
     path="uint",
     depth="uint",
-    unused0="uint",
-    unused1="uint",
+    bounce_counts="uint",
+    unused="uint",
 )
 """One light path vertex, 64 bytes (paper section 5.1). Those of a segment follow each other as its active paths do.
 ``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
 transparent. The upper bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known.
 ``path`` is the number of its path, with that of the segment above (PhotonNumbers); ``depth`` that of the path (Depths),
-with PHOTON_CONTRIBUTED once an importon takes it."""
+with PHOTON_CONTRIBUTED once an importon takes it, and ``bounce_counts`` those of the path."""
 PHOTON_SEGMENT_SHIFT = 22
 """Photons of an iteration are fewer (MOST_PHOTONS), and segments than what is left of a word (MOST_SEGMENTS)."""
 PHOTON_CONTRIBUTED = 1 << 31

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings of light paths that change the picture."""
+
+import bpy
+
+from ...net import diffuse
+from ...scenes import GLASS, GLOSSY, ball, light, material, place, plane
+from .. import stage
+from ..rows import Row, add
+from .lights import ABOVE
+
+BOUNCES = "Bounces by type"
+
+
+def set_paths(**values: object) -> None:
+    """Set properties of the same name of both engines."""
+    for name, value in values.items():
+        setattr(bpy.context.scene.cycles, name, value)
+        setattr(bpy.context.scene.rppm, name, value)
+
+
+def paths(group: str, name: str, values: dict[str, object], **members: object) -> None:
+    """A row with settings of both engines: a ball on the ground beside one of glass, before a mirror and a translucent
+    sheet."""
+
+    def build() -> None:
+        stage.empty()
+        stage.set_up(diffuse("Plain", (0.8, 0.7, 0.6)))
+        ball(0.45, material(GLASS, Roughness=0.0, IOR=1.45), place(at=(-0.7, -1.0, 0.5)))
+        mirror = material(GLOSSY, Color=(0.8, 0.9, 0.9), Roughness=0.0)
+        plane(0.9, mirror, place(at=(-1.0, 1.3, 0.9), turn=(90.0, 0.0, 20.0)))
+        sheet = material("ShaderNodeBsdfTranslucent", Color=(0.8, 0.6, 0.7))
+        plane(0.5, sheet, place(at=(1.5, 0.2, 0.7), turn=(80.0, 0.0, -30.0)))
+        lamp = light("AREA", 80.0, place(**ABOVE), size=0.8)
+        lamp.visible_transmission = lamp.visible_glossy = False  # its images are small and bright: noise
+        set_paths(**values)
+
+    longer = {"camera_path_length": 17, "photon_path_length": 17, "photons": 8192}
+    add(Row(group, name, build, settings=longer, effort=4, **members))
+
+
+for _kind in ("diffuse", "glossy", "transmission"):
+    paths(BOUNCES, f"{_kind.title()} 0", {f"{_kind}_bounces": 0})
+paths(
+    BOUNCES,
+    "Diffuse 1, Glossy 1, Transmission 2",
+    {"diffuse_bounces": 1, "glossy_bounces": 1, "transmission_bounces": 2},
+)
