@@ -11,6 +11,9 @@
 #include "common/path_depth.glsl"
 #include "common/surface_tolerance.glsl"
 readonly buffer PhotonOrigins;
+#ifdef DROPS_CAUSTICS
+#include <CausticKinds>
+#endif
 #ifdef COUNTS_BOUNCES
 #include "common/bounce_limits.glsl"
 #include <CameraPath>
@@ -103,9 +106,13 @@ uint arrived_counts(uint number) {
 #endif
 }
 
-// Whether the limits by type let a lobe of a type scatter a photon to a camera path with some counts. That is a bounce
-// unless the photon comes from its light.
+// Whether the limits by type let a lobe of a type scatter a photon to a camera path with some counts, and the photon is
+// no caustic that is left out. The scattering is a bounce unless the photon comes from its light.
 bool may_scatter(uint counts, uint photon_number, uint scatter, bool transmitted) {
+#ifdef DROPS_CAUSTICS
+    bool is_caustic = (photons[photon_number].depth >> CAUSTIC_SHIFT & iteration.dropped_caustics) != 0u;
+    if (is_caustic && scatter == SCATTER_DIFFUSE) return false;
+#endif
 #ifdef COUNTS_BOUNCES
     bool is_bounce = bounces_of(photons[photon_number].depth) > 0u;
     uint own = is_bounce ? counted(0u, counted_scatter(scatter, transmitted)) : 0u;

@@ -95,6 +95,17 @@ uint departing_counts(PhotonVertex vertex, BsdfSample bsdf) {
 }
 #endif
 
+#ifdef DROPS_CAUSTICS
+#include <CausticKinds>
+
+// The kind of caustic that a sample makes of a photon where it comes to a diffuse surface next. Fibers make none.
+uint caustic_kind(BsdfSample bsdf) {
+    if (bsdf.part == PART_HAIR || bsdf.part == PART_STRAND) return 0u;
+    if (bsdf.scatter == SCATTER_TRANSMISSION) return CAUSTIC_REFRACTED;
+    return bsdf.scatter == SCATTER_GLOSSY ? CAUSTIC_REFLECTED : 0u;
+}
+#endif
+
 // Writes the next ray and the state of the path.
 void spawn_ray(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
     uint index = vertex.index;
@@ -102,6 +113,10 @@ void spawn_ray(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     if (bsdf.part != PART_TRANSPARENT) photon_paths[index].depth += ONE_BOUNCE;
     else if (counts_as_transparent(closure)) photon_paths[index].depth += ONE_TRANSPARENT;
+#ifdef DROPS_CAUSTICS
+    if (bsdf.part != PART_TRANSPARENT)
+        photon_paths[index].depth = (photon_paths[index].depth & DEPTH_MASK) | caustic_kind(bsdf) << CAUSTIC_SHIFT;
+#endif
     if (vertex.has_differential) scatter_differential(vertex, bsdf);
     if (!straight) photon_differentials[index].before = 0.0;
     float offset = closures[index].ray_offset;
@@ -123,6 +138,10 @@ void sample_next_ray(PhotonVertex vertex) {
     bool leaves = bsdf.transmitted ? side < 0.0 : side > 0.0;
     if (!(largest(bsdf.weight) > 0.0 && leaves)) return;
     bool straight = bsdf.direction == -vertex.wo;
+#ifdef DROPS_CAUSTICS
+    bool is_caustic = (vertex.depth >> CAUSTIC_SHIFT & iteration.dropped_caustics) != 0u;
+    if (is_caustic && bsdf.scatter == SCATTER_DIFFUSE) return;
+#endif
 #ifdef COUNTS_BOUNCES
     uint counts = departing_counts(vertex, bsdf);
     if (exceed_limits(counts_of(counts))) return;

@@ -3,7 +3,7 @@
 // lint:
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
-// lint: COUNTS_BOUNCES=1
+// lint: COUNTS_BOUNCES=1 DROPS_CAUSTICS=1
 // TracePhotons: at the end of the ray of a photon path, store the photon and sample the next ray.
 
 layout(local_size_x = 64) in;

@@ -21,6 +21,8 @@ class ShaderFeatures:
     """Whether the world's light comes in through portals."""
     counts_bounces: bool = False
     """Whether bounces are counted by type."""
+    drops_caustics: bool = False
+    """Whether any kind of caustics is left out."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -30,6 +32,7 @@ class ShaderFeatures:
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
             scene.settings.limits_bounces_by_type,
+            scene.settings.dropped_caustics != 0,
         )
 
     @property
@@ -40,5 +43,6 @@ class ShaderFeatures:
             "ASHIKHMIN_LOBES": self.has_ashikhmin,
             "PORTALS": self.has_portals,
             "COUNTS_BOUNCES": self.counts_bounces,
+            "DROPS_CAUSTICS": self.drops_caustics,
         }
         return {name: 1 for name, has in macros.items() if has}

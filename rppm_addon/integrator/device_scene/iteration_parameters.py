@@ -23,6 +23,7 @@ _SETTINGS = {
     "photon_bounces": "uint",
     "film_transparent": "uint",
     "bounce_limits": "uvec4",
+    "dropped_caustics": "uint",
 }
 """Members that are attributes of RenderSettings, by name and type."""
 

@@ -57,6 +57,7 @@ Record(
     ray_stride="uint",
     ray_level="uint",
     ray_levels="uint",
+    dropped_caustics="uint",
 )
 
 
@@ -170,6 +171,7 @@ class Resolve(BufferSet):
             "pixel_size": camera.pixel_size,
             "world_origin": scene.world_offset,
             "seed": scene.settings.seed,
+            "dropped_caustics": scene.settings.dropped_caustics,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
             "camera_flags": CAMERA_PATH.offset("flags") // 4,

@@ -18,6 +18,13 @@ _MOST_PASSED = 32
 them."""
 
 
+class CausticKind(enum.IntFlag):
+    """Kinds of caustics, by the lobe that sent the light to a diffuse surface; 0 is none."""
+
+    REFLECTED = 1
+    REFRACTED = 2
+
+
 class DirectLight(enum.Enum):
     """Estimator of the light that comes straight from a source; never both."""
 
@@ -74,6 +81,18 @@ class LightPathSettings(SettingGroup):
         soft_maximum=64,
     )
     """The name and the default are those of Cycles."""
+    caustics_reflective: bool = setting(
+        True,
+        "Reflective Caustics",
+        "Caustics by reflection: light that glossy surfaces and mirrors send to diffuse ones. Without, as in Cycles, "
+        "surfaces that diffuse ones see reflect nothing",
+    )
+    caustics_refractive: bool = setting(
+        True,
+        "Refractive Caustics",
+        "Caustics by refraction: light that glass sends to diffuse surfaces. Without, as in Cycles, glass that diffuse "
+        "surfaces see lets nothing through",
+    )
     camera_path_length: int = setting(
         1 + _MOST_BOUNCES,
         "Max Camera Bounces",
@@ -140,6 +159,13 @@ class LightPathSettings(SettingGroup):
     def limits_bounces_by_type(self) -> bool:
         """Whether a limit by type ends paths that the limit of all bounces does not."""
         return any(limit != NO_BOUNCE_LIMIT for limit in self.bounce_limits)
+
+    @property
+    def dropped_caustics(self) -> int:
+        """Kinds of caustics that are left out, as a CausticKind."""
+        return (0 if self.caustics_reflective else CausticKind.REFLECTED) | (
+            0 if self.caustics_refractive else CausticKind.REFRACTED
+        )
 
     @property
     def camera_bounces(self) -> int:

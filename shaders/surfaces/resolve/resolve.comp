@@ -110,7 +110,14 @@ float wavelength_choice(uint index, uint flags) {
 #endif
 
 ClosureBuilder builder_at(Surface surface, float u_choice) {
-    return closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
+    ClosureBuilder builder =
+        closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
+    // As in Cycles, surfaces that diffuse ones see lack the lobes of caustics that are left out. Photons keep them, as
+    // who sees the light that they bring is not known yet (photons/sample_next_ray.glsl).
+    uint dropped = (surface.ray & RAY_DIFFUSE) != 0u ? parameters.dropped_caustics : 0u;
+    builder.dropped_caustics = parameters.path_kind == PATH_OF_CAMERA ? dropped : 0u;
+    builder.is_bare = (dropped & CAUSTIC_REFLECTED) != 0u;
+    return builder;
 }
 
 // What an object that is a holdout, or catches shadows, does to its closure.

@@ -22,6 +22,8 @@ SHARED = {
             "diffuse_bounces",
             "glossy_bounces",
             "transmission_bounces",
+            "caustics_reflective",
+            "caustics_refractive",
         )
     },
     **{

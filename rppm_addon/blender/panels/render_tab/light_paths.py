@@ -45,8 +45,19 @@ class RPPM_PT_path_parts(RppmPanel, bpy.types.Panel):
         column.prop(settings, "max_photon_bounces", text="Photon")
 
 
+class RPPM_PT_light_paths_caustics(_LightPathsPanel, bpy.types.Panel):
+    bl_label = "Caustics"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column().column(heading="Caustics", align=True)
+        column.prop(settings, "caustics_reflective", text="Reflective")
+        column.prop(settings, "caustics_refractive", text="Refractive")
+
+
 CLASSES = (
     RPPM_PT_light_paths,
     RPPM_PT_light_paths_max_bounces,
     RPPM_PT_path_parts,
+    RPPM_PT_light_paths_caustics,
 )

@@ -6,6 +6,7 @@ import enum
 from ....gl.buffers.constants import Constants
 from ....gl.buffers.records import Record
 from ....gl.buffers.storage_blocks import StorageBlock
+from ....scene.settings import CausticKind
 
 PHOTON_PATH = Record(
     "PhotonPath",
@@ -30,6 +31,9 @@ StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 DEPTH_BITS = 11
 """Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""
 Constants("Depths", DEPTH_BITS=DEPTH_BITS)
+CAUSTIC_SHIFT = 2 * DEPTH_BITS
+"""Place of the CausticKind in the depth of a photon and of its path, above both numbers."""
+Constants("CausticKinds", CAUSTIC=CausticKind, CAUSTIC_SHIFT=CAUSTIC_SHIFT)
 
 
 class PhotonFlag(enum.IntFlag):

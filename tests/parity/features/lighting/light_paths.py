@@ -9,7 +9,7 @@ from .. import stage
 from ..rows import Row, add
 from .lights import ABOVE
 
-BOUNCES = "Bounces by type"
+BOUNCES, CAUSTICS = "Bounces by type", "Caustics"
 
 
 def set_paths(**values: object) -> None:
@@ -46,3 +46,6 @@ paths(
     "Diffuse 1, Glossy 1, Transmission 2",
     {"diffuse_bounces": 1, "glossy_bounces": 1, "transmission_bounces": 2},
 )
+
+for _kinds in (("reflective",), ("refractive",), ("reflective", "refractive")):
+    paths(CAUSTICS, f"{' and '.join(_kinds)} off", {f"caustics_{kind}": False for kind in _kinds})
