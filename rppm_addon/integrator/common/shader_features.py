@@ -23,6 +23,8 @@ class ShaderFeatures:
     """Whether bounces are counted by type."""
     drops_caustics: bool = False
     """Whether any kind of caustics is left out."""
+    clamps_light: bool = False
+    """Whether light that paths bring has a limit."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -33,6 +35,7 @@ class ShaderFeatures:
             any(light.is_portal for light in scene.lights),
             scene.settings.limits_bounces_by_type,
             scene.settings.dropped_caustics != 0,
+            scene.settings.sample_clamp_direct > 0.0 or scene.settings.sample_clamp_indirect > 0.0,
         )
 
     @property
@@ -44,5 +47,6 @@ class ShaderFeatures:
             "PORTALS": self.has_portals,
             "COUNTS_BOUNCES": self.counts_bounces,
             "DROPS_CAUSTICS": self.drops_caustics,
+            "CLAMPS_LIGHT": self.clamps_light,
         }
         return {name: 1 for name, has in macros.items() if has}

@@ -24,6 +24,8 @@ _SETTINGS = {
     "film_transparent": "uint",
     "bounce_limits": "uvec4",
     "dropped_caustics": "uint",
+    "clamp_direct": "float",
+    "clamp_indirect": "float",
 }
 """Members that are attributes of RenderSettings, by name and type."""
 

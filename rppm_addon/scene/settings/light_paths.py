@@ -2,6 +2,7 @@
 """Settings of light paths: how long they are, and how light is estimated at their vertices."""
 
 import enum
+import math
 from dataclasses import dataclass
 
 from .group import SettingGroup
@@ -81,6 +82,21 @@ class LightPathSettings(SettingGroup):
         soft_maximum=64,
     )
     """The name and the default are those of Cycles."""
+    sample_clamp_direct: float = setting(
+        0.0,
+        "Clamp Direct",
+        "Largest mean of red, green and blue of a sample of direct light, W/(m^2 sr), as in Cycles",
+        minimum=0.0,
+        zero="no limit",
+    )
+    sample_clamp_indirect: float = setting(
+        0.0,
+        "Clamp Indirect",
+        "Largest mean of red, green and blue of a sample of indirect light, W/(m^2 sr), as in Cycles; of photons and "
+        "the final gather it limits what a sample finds",
+        minimum=0.0,
+        zero="no limit",
+    )
     caustics_reflective: bool = setting(
         True,
         "Reflective Caustics",
@@ -159,6 +175,16 @@ class LightPathSettings(SettingGroup):
     def limits_bounces_by_type(self) -> bool:
         """Whether a limit by type ends paths that the limit of all bounces does not."""
         return any(limit != NO_BOUNCE_LIMIT for limit in self.bounce_limits)
+
+    @property
+    def clamp_direct(self) -> float:
+        """Largest mean of a contribution's channels, W/(m^2 sr), of direct light."""
+        return self.sample_clamp_direct or math.inf
+
+    @property
+    def clamp_indirect(self) -> float:
+        """Largest mean of a contribution's channels, W/(m^2 sr), of indirect light."""
+        return self.sample_clamp_indirect or math.inf
 
     @property
     def dropped_caustics(self) -> int:

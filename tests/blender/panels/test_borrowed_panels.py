@@ -15,9 +15,9 @@ ALIKE = {
     ("CYCLES_MATERIAL_PT_", "RPPM_PT_material_"): "displacement settings surface volume",
     ("CYCLES_RENDER_PT_", "RPPM_PT_"): """
         bake bake_influence bake_output bake_output_margin bake_selected_to_active curves film
-        light_paths light_paths_caustics light_paths_max_bounces motion_blur motion_blur_curve
-        performance sampling sampling_viewport simplify simplify_culling simplify_render
-        simplify_viewport filter passes
+        light_paths light_paths_caustics light_paths_clamping light_paths_max_bounces motion_blur
+        motion_blur_curve performance sampling sampling_viewport simplify simplify_culling
+        simplify_render simplify_viewport filter passes
     """,
     ("CYCLES_WORLD_PT_", "RPPM_PT_world_"): "preview ray_visibility surface",
 }
@@ -66,7 +66,6 @@ EXCLUDED = {
     "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,
     "CYCLES_RENDER_PT_curves_viewport_display": "Blender's own viewports draw so",
     "CYCLES_RENDER_PT_debug": OF_CYCLES,
-    "CYCLES_RENDER_PT_light_paths_clamping": "nothing is clamped",
     "CYCLES_RENDER_PT_light_paths_fast_gi": OF_CYCLES,
     "CYCLES_RENDER_PT_passes_aov": f"passes of materials: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_passes_crypto": f"Cryptomatte: {NOT_RENDERED}",

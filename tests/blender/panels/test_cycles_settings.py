@@ -57,3 +57,15 @@ def test_passes_of_all_view_layers(scene):
     other.rppm.use_pass_denoising_data, other.rppm.use_pass_shadow_catcher = False, True
     bpy.ops.rppm.copy_to_cycles()
     assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True]
+
+
+def test_settings_of_light_paths(scene):
+    cycles, own = scene.cycles, scene.rppm
+    cycles.sample_clamp_direct, cycles.sample_clamp_indirect = 2.0, 10.0
+    cycles.caustics_reflective, cycles.caustics_refractive = False, True
+    bpy.ops.rppm.copy_from_cycles()
+    assert (own.sample_clamp_direct, own.sample_clamp_indirect) == (2.0, 10.0)
+    assert not own.caustics_reflective and own.caustics_refractive
+    own.caustics_reflective, own.sample_clamp_direct = True, 0.0
+    bpy.ops.rppm.copy_to_cycles()
+    assert cycles.caustics_reflective and cycles.sample_clamp_direct == 0.0

@@ -25,7 +25,7 @@ def _room() -> None:
 
 
 BRIGHT_VARNISH = Tolerance(mean=0.025, block=0.06, mode=0.01)
-"""What glass shows to diffuse surfaces of varnished ones is too bright there (docs/theory.md)."""
+"""Glass shows varnished surfaces to diffuse ones too bright (docs/theory.md)."""
 CASES = {
     ("reflective", "refractive"): CLOSE,
     ("reflective",): BRIGHT_VARNISH,

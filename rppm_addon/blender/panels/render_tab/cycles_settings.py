@@ -22,6 +22,8 @@ SHARED = {
             "diffuse_bounces",
             "glossy_bounces",
             "transmission_bounces",
+            "sample_clamp_direct",
+            "sample_clamp_indirect",
             "caustics_reflective",
             "caustics_refractive",
         )

@@ -45,6 +45,16 @@ class RPPM_PT_path_parts(RppmPanel, bpy.types.Panel):
         column.prop(settings, "max_photon_bounces", text="Photon")
 
 
+class RPPM_PT_light_paths_clamping(_LightPathsPanel, bpy.types.Panel):
+    bl_label = "Clamping"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        settings = context.scene.rppm
+        column = self.column()
+        column.prop(settings, "sample_clamp_direct", text="Direct Light")
+        column.prop(settings, "sample_clamp_indirect", text="Indirect Light")
+
+
 class RPPM_PT_light_paths_caustics(_LightPathsPanel, bpy.types.Panel):
     bl_label = "Caustics"
 
@@ -59,5 +69,6 @@ CLASSES = (
     RPPM_PT_light_paths,
     RPPM_PT_light_paths_max_bounces,
     RPPM_PT_path_parts,
+    RPPM_PT_light_paths_clamping,
     RPPM_PT_light_paths_caustics,
 )

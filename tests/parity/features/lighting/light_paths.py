@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Settings of light paths that change the picture."""
 
+from collections.abc import Callable
+
 import bpy
 
 from ...net import diffuse
-from ...scenes import GLASS, GLOSSY, ball, light, material, place, plane
+from ...scenes import EMISSION, GLASS, GLOSSY, ball, light, material, place, plane
 from .. import stage
 from ..rows import Row, add
 from .lights import ABOVE
 
-BOUNCES, CAUSTICS = "Bounces by type", "Caustics"
+BOUNCES, CAUSTICS, CLAMPING = "Bounces by type", "Caustics", "Clamping"
 
 
 def set_paths(**values: object) -> None:
@@ -49,3 +51,28 @@ paths(
 
 for _kinds in (("reflective",), ("refractive",), ("reflective", "refractive")):
     paths(CAUSTICS, f"{' and '.join(_kinds)} off", {f"caustics_{kind}": False for kind in _kinds})
+
+
+def _clamped(values: dict[str, object], glows: bool) -> Callable[[], None]:
+    """A ball and the ground, seen straight and in a mirror: both below a lamp of no size, or a ball that glows on black
+    ground. Each path has one light to choose, so that no chance changes what it brings."""
+
+    def build() -> None:
+        stage.empty()
+        ground = diffuse("Plain", (0.0, 0.0, 0.0) if glows else (0.8, 0.7, 0.6))
+        stage.set_up(material(EMISSION, Color=(0.9, 0.5, 0.2), Strength=2.0) if glows else ground, 0.0, ground)
+        plane(1.2, material(GLOSSY, Roughness=0.0), place(at=(0.0, 1.8, 0.9), turn=(90.0, 0.0, 0.0)))
+        if not glows:
+            light("POINT", 300.0, place(**ABOVE), shadow_soft_size=0.0)
+        set_paths(**values, max_bounces=1, diffuse_bounces=0)
+
+    return build
+
+
+_ONCE = {"max_bounces": 1, "use_final_gather": False, "photons": 64}
+for _name, _kind, _limit, _glows in (
+    ("direct, lamp", "direct", 0.5, False),
+    ("indirect, lamp in a mirror", "indirect", 0.4, False),
+    ("direct, glowing ball", "direct", 0.5, True),
+):
+    add(Row(CLAMPING, _name, _clamped({f"sample_clamp_{_kind}": _limit}, _glows), settings=_ONCE))
