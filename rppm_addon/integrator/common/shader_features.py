@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from ...materials.traits.ashikhmin_shirley import has_ashikhmin
 from ...materials.traits.hair import has_hair
+from ...materials.traits.path_depths import asks_for_bounces_by_type
 from ...scene.scene import Scene
 from .viewport_demands import ViewportDemands
 
@@ -33,7 +34,8 @@ class ShaderFeatures:
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
-            scene.settings.limits_bounces_by_type,
+            scene.settings.limits_bounces_by_type
+            or any(asks_for_bounces_by_type(material.graph) for material in scene.materials),
             scene.settings.dropped_caustics != 0,
             scene.settings.sample_clamp_direct > 0.0 or scene.settings.sample_clamp_indirect > 0.0,
         )

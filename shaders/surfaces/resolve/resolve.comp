@@ -51,6 +51,13 @@ uint path_depth(uint index) {
                : parameters.segment;
 }
 
+// The bounces of a path by type, 0 where its stages do not count them. Photons come as from a diffuse surface.
+uint path_bounce_counts(uint index) {
+    if (parameters.path_kind == PATH_OF_CAMERA)
+        return path_words[parameters.camera_stride * index + parameters.camera_bounce_counts];
+    return parameters.path_kind == PATH_OF_PHOTON ? counted(0u, SCATTER_DIFFUSE) : 0u;
+}
+
 // How far a path had come straight through surfaces before its ray began.
 float straight_length(uint index) {
     return parameters.path_kind == PATH_OF_CAMERA
@@ -89,6 +96,7 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     uint depth = path_depth(index);
     surface.ray_depth = bounces_of(depth) + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
     surface.transparent_depth = transparents_of(depth);
+    surface.bounce_counts = path_bounce_counts(index);
 #ifdef ROUND_SHAPES
     make_round(surface);
 #endif

@@ -5,10 +5,11 @@ from collections.abc import Callable
 
 import bpy
 
-from ...net import diffuse
-from ...scenes import EMISSION, GLASS, GLOSSY, ball, light, material, place, plane
+from ...net import diffuse, socket
+from ...net import material as net_material
+from ...scenes import EMISSION, GLASS, GLOSSY, ball, camera, light, material, place, plane
 from .. import stage
-from ..rows import Row, add
+from ..rows import Kind, Row, add
 from .lights import ABOVE
 
 BOUNCES, CAUSTICS, CLAMPING = "Bounces by type", "Caustics", "Clamping"
@@ -76,3 +77,21 @@ for _name, _kind, _limit, _glows in (
     ("direct, glowing ball", "direct", 0.5, True),
 ):
     add(Row(CLAMPING, _name, _clamped({f"sample_clamp_{_kind}": _limit}, _glows), settings=_ONCE))
+
+
+def _depths() -> None:
+    """A wall that shows its depths by type, seen through a pane, in a mirror and through another pane."""
+    stage.empty()
+    shown, net = net_material("Depths")
+    depths = (socket("LightPath", f"{name} Depth") for name in ("Diffuse", "Glossy", "Transmission"))
+    net.output(net.emission(net.scaled(socket("CombineXYZ", inputs=dict(enumerate(depths)))(net), 0.2, 0.1)))
+    pane = material("ShaderNodeBsdfRefraction", Roughness=0.0, IOR=1.05)
+    plane(1.0, pane, place(at=(0.0, -1.0, 0.0), turn=(90.0, 0.0, 0.0)))
+    plane(2.0, material(GLOSSY, Color=(1.0, 1.0, 1.0), Roughness=0.0), place((0.0, 1.0, 0.0), (90.0, 0.0, 45.0)))
+    plane(1.5, pane, place(at=(1.5, 1.0, 0.0), turn=(90.0, 0.0, 90.0)))
+    plane(3.0, shown, place(at=(4.0, 1.0, 0.0), turn=(90.0, 0.0, -90.0)))
+    camera((0.03, -3.0, 0.07), (0.01, 1.0, 0.02), 10.0)  # no ray meets the edge between two triangles
+
+
+_LONG = {"camera_path_length": 6, "max_bounces": 8}
+add(Row("Light Path, depths", "by type behind a pane, a mirror and a pane", _depths, Kind.VALUES, settings=_LONG))
