@@ -29,11 +29,11 @@ PHOTON_BEAM = Record(
     flags="uint",
     path="uint",
     depth="uint",
-    medium_vertices="uint",
+    bounce_counts="uint",
     unused="uint",
 )
-"""The way of a photon through a medium, from ``origin`` to where it is scattered or leaves it, ``extent`` meters away: a
-short beam, whose flux, W, is that at its origin. ``photon`` is the number of the photon at its end; the other members
+"""The way of a photon through a medium, from ``origin`` to where it is scattered or leaves it, ``extent`` meters away:
+a short beam, whose flux, W, is that at its origin. ``photon`` is the number of the photon at its end; the other members
 are those of a Photon."""
 StorageBlock("PhotonBeams", "uint beam_count; PhotonBeam photon_beams[];")
 BEAM_TARGET = Record(

@@ -57,7 +57,7 @@ struct GatherPoint {
 };
 
 bool exceeds_depth(uint camera_depth, uint photon) {
-    if (!within_volume_bounces(photons[photon].medium_vertices, photons[photon].flags, 1u)) return true;
+    if (!within_volume_bounces(photons[photon].bounce_counts, photons[photon].flags, 1u)) return true;
     uint depth = camera_depth + (photons[photon].depth & DEPTH_MASK), most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u)
         most = min(most, photon_origins[photon_path_of(photons[photon].path)].max_bounces);

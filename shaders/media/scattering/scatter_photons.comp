@@ -38,7 +38,7 @@ void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, ve
     uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT));
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
-               path.depth, path.medium_vertices | PHOTON_IN_MEDIUM, 0u);
+               path.depth, path.bounce_counts | PHOTON_IN_MEDIUM, 0u);
 }
 
 // Whether shadow rays bring the light of a path that comes straight from its light.
@@ -54,7 +54,7 @@ void store_beam(uint index, PhotonPath path, Ray ray, float extent, float u) {
     photon_beams[atomicAdd(beam_count, 1u)] =
         PhotonBeam(ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
                    path.flux / probability, flags, index | parameters.segment << PHOTON_SEGMENT_SHIFT, path.depth,
-                   path.medium_vertices, 0u);
+                   path.bounce_counts, 0u);
 }
 
 vec3 turned(vec3 direction, float cosine, float angle) {
@@ -74,10 +74,11 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
     float survival = min(largest(flux) / largest(path.flux), 1.0);
     float angle = 2.0 * PI * next_random(random);
     bool survives = next_random(random) < survival;
-    uint medium_vertices = path.medium_vertices + 1u;
-    if (medium_vertices == 1u && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) medium_vertices |= FIRST_MEDIUM_LIT;
+    uint bounce_counts = medium_counted(path.bounce_counts);
+    bool is_first = medium_count(bounce_counts) == 1u;
+    if (is_first && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) bounce_counts |= FIRST_MEDIUM_LIT;
     if (bounces_of(path.depth) >= iteration.photon_bounces
-        || !within_volume_bounces(medium_vertices, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
+        || !within_volume_bounces(bounce_counts, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
         survives = false;
     }
@@ -89,7 +90,7 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
                                 | PATH_SCATTERED_IN_MEDIUM;
     photon_paths[index].flux = survives ? flux / survival : vec3(0.0);
     photon_paths[index].depth += ONE_BOUNCE;
-    photon_paths[index].medium_vertices = medium_vertices;
+    photon_paths[index].bounce_counts = bounce_counts;
     photon_differentials[index].known = 0u;
     photon_differentials[index].before = 0.0;
     rays[index] =
