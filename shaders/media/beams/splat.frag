@@ -45,6 +45,13 @@ float radius_at(float distance) {
     return max(parameters.radius, parameters.radius_pixels * pixel);
 }
 
+// Factor of a beam's flux at a distance from its origin: the transmittance over the probability of coming there, by
+// which the beam is as long as it is. It is 1 in gray media.
+vec3 flux_factor(uint flags, float way) {
+    vec3 passed = exp(-even_extinction(flags) * way);
+    return passed / max(dot(passed, vec3(1.0 / 3.0)), 1e-30);
+}
+
 void main() {
     uint pixel = uint(gl_FragCoord.y) * parameters.width + uint(gl_FragCoord.x);
     if (beam_targets[pixel].mark != parameters.segment) return;
@@ -62,6 +69,6 @@ void main() {
     float kernel = 0.75 * (1.0 - x2) / radius;
     vec3 radiance = target.throughput * segment_transmittance(target.flags, target.origin, target.direction, distance)
                     * scattered_phase(target.flags, PlaceOnRay(target.origin, target.direction, distance), -cosine)
-                    * beam.flux * (kernel * inversesqrt(sine2));
+                    * beam.flux * flux_factor(target.flags, way) * (kernel * inversesqrt(sine2));
     add_beam(pixel, beam, radiance);
 }
