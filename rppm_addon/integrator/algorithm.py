@@ -27,6 +27,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         events = stages.events_of(context, iteration, band, radii)
         stages.camera_hits.find(context, importons, view, band)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons, iteration)
+        listeners.band_begun(events)
         yield
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
@@ -34,7 +35,8 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
-            stages.direct_light.add_in_media(context, importons, band, iteration, segment)
+            if stages.direct_light.add_in_media(context, importons, band, iteration, segment):
+                listeners.medium_light_added(events, segment)
             stages.medium_photons.gather(context, importons, estimator.sums, band, segment)
             stages.shadow_catcher.cast(context, importons, band, segment)
             stages.direct_light.add(context, importons, band, iteration, segment)

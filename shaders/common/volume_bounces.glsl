@@ -3,8 +3,6 @@
 // direct light only. Light that specular surfaces alone have sent there counts as direct. The includer includes
 // common/iteration.glsl and common/photon.glsl before.
 
-uint medium_count(uint medium_vertices) { return medium_vertices & (FIRST_MEDIUM_LIT - 1u); }
-
 // Whether a photon may count at an importon; own_vertices: of the importon, 1 in a medium and 0 on a surface.
 bool within_volume_bounces(uint medium_vertices, uint photon_flags, uint own_vertices) {
     uint before = medium_count(medium_vertices), count = before + own_vertices;

@@ -62,22 +62,6 @@ void write_pass(uint which, float value) { write_pass(which, vec4(value, 0.0, 0.
 void write_pass(uint which, vec2 value) { write_pass(which, vec4(value, 0.0, 0.0)); }
 void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 
-// Prepare the passes for the path of an iteration: sums fade by its weight.
-void begin_iteration() {
-    bool first = iteration.number_in_film == 1u;
-    if (first) pass_counts[index] = uvec2(0u);
-    float kept = float(iteration.number_in_film - 1u) / float(iteration.number_in_film);
-    for (uint which = 0u; which < PASS_COUNT; which++) {
-        bool is_sum = PASS_ACCUMULATION[which] == ACCUMULATION_SUM;
-        if (!is_on(which) || !(first || is_sum)) continue;
-        for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
-            uint place = place_of(which, index) + channel;
-            pass_values[place] = is_sum ? (first ? 0.0 : kept * pass_values[place]) : PASS_NOTHING[which];
-        }
-    }
-    add_to_pass(PASS_DEBUG_SAMPLE_COUNT, index, vec3(1.0));
-}
-
 float view_depth(vec3 position) {
     vec3 offset = position - camera.position;
     if (camera.projection > PROJECTION_ORTHOGRAPHIC) return length(offset);
@@ -140,6 +124,18 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
     return true;
 }
 
+#ifdef MEDIA
+// Emission of media along a ray that escapes to the world: it is none of the environment, as what path_emission.comp
+// adds is then.
+vec3 add_media_emission(CameraPath path, bool denoised) {
+    vec3 emitted =
+        path.throughput * segment_emission(path.flags, rays[index].origin, rays[index].direction, INFINITY_DISTANCE);
+    add_to_pass(PASS_EMISSION, index, emitted);
+    if (!denoised) add_to_pass(PASS_DENOISING_ALBEDO, index, min(emitted, 1.0));
+    return emitted;
+}
+#endif
+
 void add_colors(CameraPath path, Closure closure, vec3 viewer) {
     LightColors colors = light_colors(index, closure, viewer);
     vec3 throughput =
@@ -152,7 +148,6 @@ void add_colors(CameraPath path, Closure closure, vec3 viewer) {
 void main() {
     index = active_path();
     if (index == NO_PATH) return;
-    if (parameters.segment == 0u) begin_iteration();
     bool keeps_paths = parameters.keeps_paths != 0u;
     if (!(rays[index].maximum_distance > 0.0)) {
         if (keeps_paths) pass_paths[index].w = 0.0;
@@ -170,7 +165,11 @@ void main() {
     hit = closure_hit(closure);
     uint kind = (hit ? PASS_PATH_HIT : 0u) | (camera_transparent ? PASS_PATH_CAMERA_TRANSPARENT : 0u)
                 | (denoised ? 0u : PASS_PATH_DENOISED);
-    if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
+    vec3 before = radiances[index].rgb;
+#ifdef MEDIA
+    if (keeps_paths && !hit && camera_transparent) before += add_media_emission(path, denoised);
+#endif
+    if (keeps_paths) pass_paths[index] = vec4(before, uintBitsToFloat(kind));
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
         path.flags |= PATH_DENOISING_DATA_FOUND;
     if (hit && colored) add_colors(path, closure, -rays[index].direction);

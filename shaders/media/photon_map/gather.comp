@@ -17,6 +17,8 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/path_history.glsl"
+#include <Importon>
 uniform Parameters { GatherInMediaParameters parameters; };
 readonly buffer Materials;
 readonly buffer Media;
@@ -30,7 +32,9 @@ readonly buffer CameraPaths;
 readonly buffer Closures;
 buffer Photons;
 readonly buffer PhotonOrigins;
+readonly buffer Importons;
 #include "density_estimation/splat_sums/collect.glsl"
+#include "density_estimation/splat_sums/add_light.glsl"
 readonly buffer Buckets;
 readonly buffer SortedPhotons;
 
@@ -63,6 +67,18 @@ vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radi
     return point.weight * phase * photons[photon].flux * kernel;
 }
 
+// Adds a photon's light to the sums for passes: behind surfaces that have scattered the path, to those of the first.
+void add_light(uint pixel, uint photon, uint history, vec3 radiance) {
+    add_to_group_sum(pixel, photon, false, radiance);
+    uint flags = photons[photon].flags, first = first_scatter(history);
+    bool indirect = is_indirect(flags, photons[photon].medium_vertices);
+    if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
+        add_to_light_sum(pixel, first == SCATTER_NONE ? volume_sum(indirect) : scattered_sum(first, true), radiance);
+    bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;
+    if ((parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u && is_caustic)
+        add_to_light_sum(pixel, CAUSTICS_SUM, radiance);
+}
+
 GatherPoint gather_point(uint index, CameraPath path, Ray ray, MediumCoefficients medium) {
     vec3 extinction = medium.absorption + medium.scattering;
     float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
@@ -85,6 +101,7 @@ void main() {
     if (!(largest(medium.scattering) > 0.0)) return;
     GatherPoint point = gather_point(index, path, ray, medium);
     float radius = parameters.radius;
+    uint history = parameters.segment == 0u ? 0u : departing_history(importons[index].history);
     ivec3 low = cell_of(point.position - radius, parameters.side);
     bvec3 steps = greaterThan(cell_of(point.position + radius, parameters.side), low);
     uint step_bits = (steps.x ? 1u : 0u) | (steps.y ? 2u : 0u) | (steps.z ? 4u : 0u);
@@ -126,6 +143,7 @@ void main() {
         any = true;
         photons[candidate.w].depth = photons[candidate.w].depth | PHOTON_CONTRIBUTED;
         collect_splat(collected, candidate.w, radiance, false, 0u);
+        if (parameters.light_sums != 0u) add_light(index, candidate.w, history, radiance);
     }
     if (any) write_collected(index, false, collected);
 }

@@ -14,7 +14,6 @@ layout(local_size_x = 64) in;
 #include "common/path_depth.glsl"
 #include "common/random.glsl"
 #include "common/sampling.glsl"
-#include "photons/scattered_flags.glsl"
 #include "common/volume_bounces.glsl"
 uniform Parameters { ScatterInMediaParameters parameters; };
 readonly buffer Materials;
@@ -31,7 +30,9 @@ writeonly buffer Photons;
 readonly buffer PhotonRange;
 
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
-    uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT));
+    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
+    uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT | PHOTON_INDIRECT))
+                 | ((path.flags << PHOTON_HISTORY_SHIFT) & history);
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
                path.depth, path.medium_vertices | PHOTON_IN_MEDIUM, 0u);
@@ -62,11 +63,10 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, vec3 position, vec3 w
         survives = false;
     }
     vec3 direction = turned(ray.direction, sample_phase_function(phase, u), angle);
-    const uint kept = PATH_MASK
-                      ^ (PHOTON_INDIRECT | PHOTON_DIRECT | PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY
-                         | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
-    photon_paths[index].flags = (scattered_flags(path.flags, true) & (kept | ~PATH_MASK)) | PHOTON_AFTER_ROUGH_BOUNCE
-                                | PATH_SCATTERED_IN_MEDIUM;
+    // Light that lobes have sent into a medium makes no caustics beyond.
+    const uint gone = PHOTON_INDIRECT | PHOTON_DIRECT | PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED
+                      | PHOTON_CASTS_SHADOWS | PHOTON_SCATTERED_BY_LOBE >> PHOTON_HISTORY_SHIFT;
+    photon_paths[index].flags = (path.flags & ~gone) | PHOTON_AFTER_ROUGH_BOUNCE | PATH_SCATTERED_IN_MEDIUM;
     photon_paths[index].flux = survives ? flux / survival : vec3(0.0);
     photon_paths[index].depth += ONE_BOUNCE;
     photon_paths[index].medium_vertices = medium_vertices;

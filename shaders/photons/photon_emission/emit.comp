@@ -21,6 +21,7 @@ writeonly buffer PhotonOrigins;
 writeonly buffer PhotonDifferentials;
 
 #include <GuideCells>
+#include <LightGroups>
 
 // The light's own radius, meters, or of a sun the angle of its disk's.
 float light_extent(Light light) {
@@ -90,10 +91,11 @@ void main() {
                       | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
                       | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
                       | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
-    photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces);
+    photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces, NO_LIGHT_GROUP);
     if (light.kind == LIGHT_WORLD)
-        photon_origins[index] = PhotonOrigin(largest(world_radiance(-emission.direction)),
-                                             world_shadow_ray_pdf(-emission.direction), light.max_bounces);
+        photon_origins[index] =
+            PhotonOrigin(largest(world_radiance(-emission.direction)), world_shadow_ray_pdf(-emission.direction),
+                         light.max_bounces, NO_LIGHT_GROUP);
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0, 0u);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);

@@ -21,10 +21,11 @@ PHOTON_PATH = Record(
 the channels, what left the scene and what it still carried to the vertex at which a limit cut it off.
 ``medium_vertices`` is the number of its vertices in media, with FIRST_MEDIUM_LIT."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
-PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
+PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint", light_group="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
 from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
-how often what it lights may have scattered on the way to the camera."""
+how often what it lights may have scattered on the way to the camera; and the number of its ``light_group``, where
+these have passes."""
 StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 DEPTH_BITS = 11
 """Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""
