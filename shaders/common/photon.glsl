@@ -10,7 +10,7 @@
 uint photon_path_of(uint word) { return word & ((1u << PHOTON_SEGMENT_SHIFT) - 1u); }
 
 // The number of the vertices of a photon path in media.
-uint medium_count(uint medium_vertices) { return medium_vertices & (FIRST_MEDIUM_LIT - 1u); }
+uint medium_count(uint medium_vertices) { return medium_vertices & (HIDDEN_FROM_MEDIA - 1u); }
 
 #include "common/disk_radius.glsl"
 #include <PhotonFootprints>

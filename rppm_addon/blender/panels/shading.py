@@ -91,6 +91,7 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
         column = self.column()
         for name in ("camera", "diffuse", "glossy", "transmission"):
             column.prop(thing, f"visible_{name}", text=name.capitalize())
+        column.prop(thing, "visible_volume_scatter", text="Volume Scatter")
         if thing.type != "LIGHT":
             column.prop(thing, "visible_shadow", text="Shadow")
             mask = column.column(heading="Mask")
@@ -129,7 +130,7 @@ class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
-        for name in ("camera", "diffuse", "glossy", "transmission"):
+        for name in ("camera", "diffuse", "glossy", "transmission", "scatter"):
             column.prop(context.world.cycles_visibility, name)
         column.separator()
         column.prop(context.world.cycles, "max_bounces")

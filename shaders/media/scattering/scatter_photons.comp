@@ -45,6 +45,16 @@ vec3 turned(vec3 direction, float cosine, float angle) {
     return normalize(sine * (cos(angle) * t + sin(angle) * b) + cosine * direction);
 }
 
+// Ends a path whose light the media do not scatter, in place of the photon that it would store.
+void end_path(uint index, PhotonPath path, Ray ray) {
+    photons[photon_first + active_place()] =
+        Photon(vec3(0.0), 0u, path.flux, 0u, -ray.direction, 0.0, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
+               path.depth, 0u, 0u);
+    photon_paths[index].flux = vec3(0.0);
+    photon_paths[index].flags |= PATH_SCATTERED_IN_MEDIUM;
+    rays[index].maximum_distance = 0.0;
+}
+
 // Sends the path on from where a medium has scattered it. Russian roulette keeps the flux of photons even.
 void sample_next_ray(uint index, PhotonPath path, Ray ray, vec3 position, vec3 weight, RandomSequence random) {
     vec3 flux = path.flux * weight;
@@ -56,7 +66,8 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, vec3 position, vec3 w
     float angle = 2.0 * PI * next_random(random);
     bool survives = next_random(random) < survival;
     uint medium_vertices = path.medium_vertices + 1u;
-    if (medium_vertices == 1u && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) medium_vertices |= FIRST_MEDIUM_LIT;
+    if (medium_count(medium_vertices) == 1u && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u)
+        medium_vertices |= FIRST_MEDIUM_LIT;
     if (bounces_of(path.depth) >= iteration.photon_bounces
         || !within_volume_bounces(medium_vertices, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
@@ -94,6 +105,10 @@ void main() {
         vec3 weight = vec3(1.0 / max(flight.passing, 1e-30));
         if (escapes) weight *= exp(-extinction * far);
         photon_paths[index].flux = path.flux * weight;
+        return;
+    }
+    if ((path.medium_vertices & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u) {
+        end_path(index, path, ray);
         return;
     }
     vec3 position = ray.origin + flight.distance * ray.direction;

@@ -44,6 +44,11 @@ PhotonDifferential leaving_differential(Light light, Emission emission, float be
                               parallel ? none : apart * b, before);
 }
 
+bool is_hidden_from_media(Light light, Emission emission) {
+    if (emission.triangle != NO_TRIANGLE) return (emitter_traits(emission.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u;
+    return (light.flags & RAY_VOLUME_SCATTER) == 0u;
+}
+
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
 // they pass it by.
 bool enter_scene(inout vec3 origin, vec3 direction) {
@@ -96,7 +101,8 @@ void main() {
         photon_origins[index] =
             PhotonOrigin(largest(world_radiance(-emission.direction)), world_shadow_ray_pdf(-emission.direction),
                          light.max_bounces, NO_LIGHT_GROUP);
-    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0, 0u);
+    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0,
+                                     is_hidden_from_media(light, emission) ? HIDDEN_FROM_MEDIA : 0u);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     float before = distance(left_from, emission.origin);

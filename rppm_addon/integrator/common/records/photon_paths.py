@@ -19,7 +19,7 @@ PHOTON_PATH = Record(
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl); its ``depth`` (Depths); and of its flux, W summed over
 the channels, what left the scene and what it still carried to the vertex at which a limit cut it off.
-``medium_vertices`` is the number of its vertices in media, with FIRST_MEDIUM_LIT."""
+``medium_vertices`` is the number of its vertices in media, with FIRST_MEDIUM_LIT and HIDDEN_FROM_MEDIA."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
 PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint", light_group="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
@@ -71,6 +71,13 @@ SCATTERED_IN_MEDIUM = 1 << PHOTON_FLAG_BITS + 1
 """Flag of a photon path in a segment in which a medium has scattered it, so that no surface does."""
 FIRST_MEDIUM_LIT = 1 << 30
 """Flag of ``medium_vertices``: light came to the first vertex in a medium straight or by specular surfaces."""
-Constants("MediumScattering", PATH_SCATTERED_IN_MEDIUM=SCATTERED_IN_MEDIUM, FIRST_MEDIUM_LIT=FIRST_MEDIUM_LIT)
+HIDDEN_FROM_MEDIA = 1 << 29
+"""Flag of ``medium_vertices``: from a light of which media scatter nothing until something else has."""
+Constants(
+    "MediumScattering",
+    PATH_SCATTERED_IN_MEDIUM=SCATTERED_IN_MEDIUM,
+    FIRST_MEDIUM_LIT=FIRST_MEDIUM_LIT,
+    HIDDEN_FROM_MEDIA=HIDDEN_FROM_MEDIA,
+)
 Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
 """A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""
