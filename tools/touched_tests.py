@@ -15,7 +15,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 MOST_FILES = 6
 """With long tests, that CI has time for."""
-PARITY = ("cameras", "geometry", "lights", "materials", "nodes", "passes", "skies", "transport")
+PARITY = ("cameras", "geometry", "lights", "materials", "media", "nodes", "passes", "skies", "transport")
 """Folders of tests/parity but for features, whose rows take as long as all of them."""
 PICTURES = ("tests/gl", *(f"tests/parity/{room}" for room in PARITY))
 ROOMS: dict[str, tuple[str, ...]] = {

@@ -4,6 +4,7 @@
 from collections.abc import Iterator
 
 from .camera_paths.gbuffer import jittered_view
+from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
@@ -35,9 +36,9 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             importons.resolve(context, iteration, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
-            if stages.direct_light.add_in_media(context, importons, band, iteration, segment):
-                listeners.medium_light_added(events, segment)
-            stages.medium_photons.gather(context, importons, estimator.sums, band, segment)
+            if stages.media.is_on:
+                _add_scattering_in_media(context, stages, events, segment)
+                yield
             stages.shadow_catcher.cast(context, importons, band, segment)
             stages.direct_light.add(context, importons, band, iteration, segment)
             yield
@@ -59,16 +60,30 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     yield
 
 
+def _add_scattering_in_media(context: StageContext, stages: StageSet, events: BandEvents, segment: int) -> None:
+    """Add the light that media scatter toward the camera along the rays of a segment: direct light by shadow rays, and
+    all other light by photon beams, where rays come straight from the camera through thin media, or by photons."""
+    importons, band, sums, beams = events.importons, events.band, events.sums, stages.photon_beams
+    if stages.direct_light.add_in_media(context, importons, band, events.iteration, segment):
+        stages.listeners.medium_light_added(events, segment)
+    raster = stages.camera_hits.raster(band)
+    beams.splat(context, stages.photons, importons, sums, raster, segment)
+    beams_from = beams.least_free_path if beams.draws(raster, segment) else None
+    stages.medium_photons.gather(context, importons, sums, band, segment, beams_from)
+
+
 def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration) -> Iterator[None]:
     """DirectPhotonHits and TracePhotons, in steps."""
     context.begin(iteration)
     photons = stages.photons
     photons.emit(context, iteration)
+    if stages.media.is_on:
+        stages.photon_beams.clear(stages.media.volume(context))
     stages.media.enter_photons(context, photons, iteration)
     for segment in range(context.settings.photon_segments):
         if segment > 0 and not photons.trace(context, segment):
             break
-        stages.medium_scattering.scatter_photons(context, photons, segment)
+        stages.medium_scattering.scatter_photons(context, photons, stages.photon_beams, segment)
         photons.resolve(context, iteration, segment)
         photons.scatter(context, stages.subsurface, iteration, segment)
         yield
@@ -81,6 +96,7 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     radii = learning.radii_for(iteration, listed)
     context.iteration_block.write_radii(radii)
     stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume(context))
+    stages.photon_beams.prepare(context, iteration)
     estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
     return radii
 

@@ -34,6 +34,7 @@ from .film.light_groups import LightGroups
 from .film.light_passes import LightPasses
 from .film.noise_estimate import NoiseEstimate
 from .film.photon_noise import PhotonNoise
+from .media.beams import PhotonBeams
 from .media.media import Media
 from .media.photon_map import MediumPhotonMap
 from .media.scattering import MediumScattering
@@ -62,6 +63,7 @@ class StageSet(BufferSet):
     subsurface = Part(Subsurface)
     media = Part(Media)
     medium_scattering = Part(MediumScattering)
+    photon_beams = Part(PhotonBeams)
     medium_photons = Part(MediumPhotonMap)
     film = Part(Film)
     light_passes = Part(LightPasses)

@@ -10,6 +10,7 @@ import numpy as np
 from ..gl.buffer_sets import BufferSet, StorageBuffer
 from ..gl.buffers.constants import Constants
 from ..gl.buffers.records import Record
+from ..gl.buffers.storage_blocks import StorageBlock
 from ..gl.context.context import Context
 from ..gl.programs.program import Bindable
 from ..gl.programs.programs import ProgramLibrary
@@ -38,6 +39,8 @@ Record(
     light_kind="uint",
     light_normal="vec3",
 )
+StorageBlock("Emissions", "vec4 emissions[];")
+"""Emission of a node graph at what it is evaluated at."""
 
 _CHUNK = 1 << 18
 

@@ -1,22 +1,34 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Participating media of a scene on the device: the volumes inside surfaces, and the world's."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from ..gl.buffer_sets import BufferSet, StorageBuffer
+from ..gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ..gl.context.context import Context
 from ..gl.programs.programs import ProgramLibrary
 from ..scene.scene import Scene
+from .medium_grids import EvaluateVoxels, MediumGrids, PlacedMedium
+from .medium_places import MediumPlaces
 from .records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
-from .traits.interiors import Evaluate, Interior
+from .traits.interiors import Evaluate, Interior, Variation
+
+_Medium = tuple[np.void, np.ndarray]
+"""A MEDIUM record, and its (n,) PHASE_FUNCTION records."""
 
 
 class MediaTables(BufferSet):
-    """The buffers Media and PhaseFunctions. Medium 0 is the world's, which all paths are in; others fill materials."""
+    """The buffers Media and PhaseFunctions. Medium 0 is the world's, which all paths are in; others fill materials.
+
+    Media that are the same everywhere are numbered first, one a material. Those that vary have a grid, one for each
+    instance with the material, and ``bake`` makes them once the instances are known.
+    """
 
     remedy = "use fewer materials with volumes"
     _media = StorageBuffer("media", MEDIUM, block="Media")
     _phase_functions = StorageBuffer("phase functions", PHASE_FUNCTION, block="PhaseFunctions")
+    _grids = Part(MediumGrids)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -28,6 +40,10 @@ class MediaTables(BufferSet):
         """Whether any medium scatters light."""
         self.world_scatters = False
         """Whether the world's medium scatters light."""
+        self.places = MediumPlaces({}, None, 0)
+        """Media that vary."""
+        self._even: list[_Medium] = []
+        """The world's medium, and those that are the same everywhere."""
 
     def build(
         self, scene: Scene, records: np.ndarray, interiors: list[Interior], world: Interior, evaluate: Evaluate
@@ -36,28 +52,42 @@ class MediaTables(BufferSet):
 
         interiors: of the materials, (n,) as the MATERIAL ``records``; world: the world's volume.
         """
-        media = [_medium(interior, evaluate) for interior in interiors]
-        filled = [index for index, (record, _) in enumerate(media) if _has_effect(record)]
+        even = {index: _medium(interior, evaluate) for index, interior in enumerate(interiors) if not interior.varies}
+        filled = [index for index, (record, _) in even.items() if _has_effect(record)]
         if len(filled) > MAX_MEDIA:
             scene.warn(f"{len(filled)} materials have volumes; those of the first {MAX_MEDIA} are rendered")
             filled = filled[:MAX_MEDIA]
         records["medium"][filled] = 1 + np.arange(len(filled))
         records["medium_bits"] = max(len(filled).bit_length(), 1)
-        listed = [_medium(world, evaluate), *(media[index] for index in filled)]
+        world_varies = world.variation >= Variation.PLACE_IN_OBJECT
+        self._even = [_medium(Interior() if world_varies else world, evaluate), *(even[index] for index in filled)]
+        varying = {index: interior for index, interior in enumerate(interiors) if interior.varies}
+        self.places = MediumPlaces(varying, world if world_varies else None, len(filled))
+        self.materials = frozenset(filled) | frozenset(varying)
+        self._upload(self._even)
+
+    def bake(
+        self, scene: Scene, media: Sequence[PlacedMedium], evaluate: EvaluateVoxels, evaluate_once: Evaluate
+    ) -> None:
+        """Bake and upload the media that vary: those of ``places``, the world's behind them."""
+        baked = self._grids.bake(scene, list(media), evaluate, evaluate_once)
+        world = self._even[0] if self.places.world is None else baked.pop()
+        self._upload([world, *self._even[1:], *baked])
+
+    def _upload(self, listed: list[_Medium]) -> None:
         first = 0
         for record, functions in listed:
             record["first_function"] = first
             first += len(functions)
         self._media.upload(np.array([record for record, _ in listed]))
         self._phase_functions.upload(np.concatenate([functions for _, functions in listed] + [PHASE_FUNCTION.zeros(1)]))
-        self.materials = frozenset(filled)
         self.emit = any(record["emission"].any() for record, _ in listed)
         self.scatter = any(record["scattering"].any() for record, _ in listed)
         self.world_scatters = bool(listed[0][0]["scattering"].any())
 
 
-def _medium(interior: Interior, evaluate: Evaluate) -> tuple[np.void, np.ndarray]:
-    """The MEDIUM record of an interior, and its (n,) PHASE_FUNCTION records."""
+def _medium(interior: Interior, evaluate: Evaluate) -> _Medium:
+    """The record of an interior that is the same everywhere, and its phase functions."""
     record = MEDIUM.zeros(1)[0]
     for name, graph in (("absorption", interior.absorption), ("emission", interior.emission)):
         if graph is not None:

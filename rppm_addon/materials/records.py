@@ -30,10 +30,18 @@ MEDIUM = Record(
     scattering="vec3",
     function_count="uint",
     emission="vec3",
-    unused0="uint",
+    channels="uint",
+    to_grid0="vec4",
+    to_grid1="vec4",
+    to_grid2="vec4",
+    voxels="uvec3",
+    first_word="uint",
 )
 """A participating medium: its absorption and scattering coefficients, 1/m, the radiance that it emits by length,
-W/(m^3 sr), and the place of its phase functions in PhaseFunctions."""
+W/(m^3 sr), and the place of its phase functions in PhaseFunctions. Where these vary, they are scales of channels of a
+grid of ``voxels`` (0 without one): the channels of the three (bricks.py), a byte each from the lowest; the rows of the
+matrix from the world to the grid, in which voxel i reaches from i to i + 1; and where its table of bricks begins in
+MediumVoxels."""
 StorageBlock("Media", "Medium media[];")
 
 

@@ -1,29 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials and images in GPU buffers, as shaders/materials/ reads them."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ..gl.context.context import Context
+from ..gl.programs.program import Bindable
 from ..gl.programs.programs import ProgramLibrary
 from ..gl.programs.sources import CompileError
 from ..scene.images import Image
 from ..scene.materials import Material
+from ..scene.meshes import Instance
 from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
 from ..scene.storage.sharing import same_members
 from . import albedo_tables, dispersion
+from .bricks import BRICK_VOXELS, Lattice
 from .compiler.constant_layout import ConstantLayout
 from .compiler.scene_graphs import NO_EFFECT, SceneGraphs, TextUse, UnattachedGraph
 from .evaluation import GraphEvaluator, LightSurface
 from .images import image_records
 from .media import MediaTables
+from .medium_grids import PlacedMedium
 from .records import IMAGE_ENTRY, MATERIAL
 from .traits.emitted import Emits
 from .traits.transparency import passes_shadow_rays
 from .traits.view_dependence import depends_on_view
+from .volume_attributes import VolumeAttributes
+from .voxel_evaluation import VoxelEvaluator
 
 
 def default_material() -> Material:
@@ -67,6 +74,8 @@ class MaterialTables(BufferSet):
     _albedo_tables = StorageBuffer("material AlbedoTables", "float", texel_bytes=16, block="AlbedoTables")
     media = Part(MediaTables)
     _evaluator = Part(GraphEvaluator)
+    _voxel_evaluator = Part(VoxelEvaluator)
+    _volume_attributes = Part(VolumeAttributes)
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
@@ -84,6 +93,8 @@ class MaterialTables(BufferSet):
         self._unattached: dict[int, tuple[UnattachedGraph, int]] = {}
         """Graphs that belong to no surface, with the places of their constants, by the graph's identity."""
         self._images: list[Image] = []
+        self._records = MATERIAL.zeros(0)
+        """Of all materials, without the copies of MediumPlaces."""
         self._scene: Scene | None = None
 
     def build(self, scene: Scene) -> None:
@@ -117,6 +128,51 @@ class MaterialTables(BufferSet):
         self._upload_images(layout.images())
         self.media.build(scene, records, graphs.interiors, graphs.world_interior, self.evaluate)
         self._materials.upload(records)
+        self._records = records
+
+    def place_media(self, scene: Scene) -> bool:
+        """Give each instance whose medium varies a material of its own; returns whether there are any."""
+        if not self.media.places.any:
+            return False
+        self._materials.upload(self.media.places.place(scene, self._records))
+        return True
+
+    def bake_media(
+        self,
+        scene: Scene,
+        placed: Sequence[Instance],
+        bounds: tuple[np.ndarray, np.ndarray],
+        blocks: Mapping[str, Bindable],
+    ) -> None:
+        """Bake the media that vary, after place_media.
+
+        placed: the instances of the scene that have triangles; bounds: of the scene, low and high, (3,) each; blocks:
+        what nodes read of instances, by name.
+        """
+        if not self.media.places.any:
+            return
+
+        bound = {**self.blocks, **blocks}
+
+        def evaluate(graph: NodeGraph, lattice: Lattice, placed: PlacedMedium) -> np.ndarray:
+            entry, first = self._unattached[id(graph)]
+            self._volume_attributes.upload(self.attribute_names, placed.volume, placed.attributes)
+            try:
+                return self._voxel_evaluator.run(
+                    entry.compiled.text,
+                    first,
+                    bound,
+                    scene,
+                    lattice,
+                    placed.instance,
+                    placed.matrix,
+                    self._volume_attributes.blocks,
+                )
+            except CompileError as error:
+                scene.warn(f"{entry.owner}: the driver does not compile its nodes ({first_line(error)}); {NO_EFFECT}")
+                return np.zeros((int(np.prod(lattice.bricks)), BRICK_VOXELS, 3), np.float32)
+
+        self.media.bake(scene, list(self.media.places.media(scene, placed, bounds)), evaluate, self.evaluate)
 
     def follow(self, scene: Scene) -> None:
         """Warn in this scene and evaluate as its camera sees, though what was built may have come with another."""

@@ -21,6 +21,7 @@ from .settings import (
     RenderSettings,
 )
 from .storage.storage import load_scene, save_scene
+from .volumes import Volume, VolumeGrid
 
 __all__ = [
     "ALL_SETS",
@@ -61,6 +62,8 @@ __all__ = [
     "ShaderNode",
     "Shutter",
     "Texels",
+    "Volume",
+    "VolumeGrid",
     "World",
     "load_scene",
     "save_scene",

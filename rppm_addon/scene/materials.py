@@ -25,3 +25,5 @@ class Material:
     wavelengths have the same."""
     on_round_shapes: bool = False
     """Whether it is on strands or points (MeshShape), and not on surfaces alone."""
+    reads_grids: bool = False
+    """Whether it is on volumes (Mesh.volume), whose grids the nodes of the interior read."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from .common.declared import declared
 from .light_linking import LightLinking
+from .volumes import Volume
 
 SMOOTH_NORMALS = ".smooth_normals"
 """Name of the attribute by which meshes that are displaced mark faces that are not smooth: of corners, the normal
@@ -83,6 +84,8 @@ class Mesh:
     dicing: Dicing | None = None
     """None: it is displaced as it is."""
     shape: MeshShape = MeshShape.SURFACE
+    volume: Volume | None = None
+    """Grids that the nodes of the volume inside read."""
 
     @property
     def triangle_count(self) -> int:

@@ -154,35 +154,54 @@ float sample_phase_function(PhaseFunction f, float u) {
 }
 
 #ifdef MEDIA
+#ifdef HETEROGENEOUS_MEDIA
+// What the scattering coefficients of a medium's phase functions are multiplied by at a place.
+vec3 scattering_factor(uint medium, PlaceOnRay at) {
+    if (!has_grid(medium)) return vec3(1.0);
+    vec3 sum = vec3(0.0);
+    uint first = media[medium].first_function, end = first + media[medium].function_count;
+    for (uint k = first; k < end; ++k) sum += phase_functions[k].scattering;
+    return grid_coefficients(medium, at).scattering / max(sum, vec3(1e-30));
+}
+#endif
+
 // Scattering coefficient of a medium by its number times its phase function, 1/(m sr).
-vec3 medium_scattered_phase(uint medium, float cosine) {
+vec3 medium_scattered_phase(uint medium, PlaceOnRay at, float cosine) {
     vec3 sum = vec3(0.0);
     uint first = media[medium].first_function, end = first + media[medium].function_count;
     for (uint k = first; k < end; ++k)
         sum += phase_functions[k].scattering * evaluate_phase_function(phase_functions[k], cosine);
+#ifdef HETEROGENEOUS_MEDIA
+    if (end > first) sum *= scattering_factor(medium, at);
+#endif
     return sum;
 }
 
 // The same of all media that a path is in.
-vec3 scattered_phase(uint flags, float cosine) {
-    vec3 sum = medium_scattered_phase(0u, cosine);
+vec3 scattered_phase(uint flags, PlaceOnRay at, float cosine) {
+    vec3 sum = medium_scattered_phase(0u, at, cosine);
     uint bits = medium_bits();
-    for (uint set = flags >> FIRST_MEDIUM; set != 0u;) sum += medium_scattered_phase(next_medium(set, bits), cosine);
+    for (uint set = flags >> FIRST_MEDIUM; set != 0u;)
+        sum += medium_scattered_phase(next_medium(set, bits), at, cosine);
     return sum;
 }
 
 // A phase function of the media that a path is in, chosen by what it scatters of each color's weight, and the random
 // number, which is as good as new.
-PhaseFunction sample_path_phase_function(uint flags, vec3 weight, inout float u) {
-    float rest = u * dot(weight, path_medium(flags).scattering);
+PhaseFunction sample_path_phase_function(uint flags, PlaceOnRay at, vec3 weight, inout float u) {
+    float rest = u * dot(weight, path_medium(flags, at).scattering);
     PhaseFunction chosen = PhaseFunction(vec3(0.0), PHASE_HENYEY_GREENSTEIN, vec4(0.0));
     uint bits = medium_bits(), set = flags >> FIRST_MEDIUM, medium = 0u;
     for (;;) {
         uint first = media[medium].first_function, end = first + media[medium].function_count;
         for (uint k = first; k < end; ++k) {
-            float part = dot(weight, phase_functions[k].scattering);
+            PhaseFunction found = phase_functions[k];
+#ifdef HETEROGENEOUS_MEDIA
+            found.scattering *= scattering_factor(medium, at);
+#endif
+            float part = dot(weight, found.scattering);
             if (part <= 0.0) continue;
-            chosen = phase_functions[k];
+            chosen = found;
             if (rest < part) {
                 u = rest / part;
                 return chosen;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // What shadow rays meet: nothing, and the light arrives; an opaque surface; or one that may be transparent, which is to
 // be resolved. Rays are inactive once that is settled.
 

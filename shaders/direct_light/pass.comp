@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Continues shadow rays behind a transparent surface, weighted by its transmittance. The transparent surfaces that the
 // camera path has crossed count towards the limit as well, as in Cycles.
 

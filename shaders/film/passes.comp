@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than
@@ -29,6 +30,9 @@ readonly buffer Closures;
 #include "film/light_colors.glsl"
 readonly buffer Rays;
 buffer CameraPaths;
+#ifdef HETEROGENEOUS_MEDIA
+#include "media/free_flight.glsl"
+#endif
 // iterations in the means; those with a surface
 buffer PassCounts;
 readonly buffer Hits;
@@ -123,9 +127,16 @@ void write_first_surface(Closure closure, SeenThroughMedia seen) {
 #ifdef MEDIA
 // Adds Denoising Data of the media along a ray: as in Cycles, media that scatter light are seen as a surface that faces
 // the camera, and has their albedo.
-void add_denoising_data_of_media(CameraPath path, SeenThroughMedia seen) {
-    MediumCoefficients medium = path_medium(path.flags);
-    if (!(largest(medium.scattering) > 0.0)) return;
+void add_denoising_data_of_media(CameraPath path, float far, SeenThroughMedia seen) {
+    if (!path_may_scatter(path.flags)) return;
+    PlaceOnRay at = PlaceOnRay(rays[index].origin, rays[index].direction, 0.0);
+#ifdef HETEROGENEOUS_MEDIA
+    uvec4 random = pcg4d(uvec4(floatBitsToUint(at.direction), iteration.number));
+    at.distance =
+        sample_scattered_flight(path.flags, rays[index], far, vec2(unit_float(random.x), unit_float(random.y)))
+            .distance;
+#endif
+    MediumCoefficients medium = path_medium(path.flags, at);
     vec3 albedo = medium.scattering / max(medium.absorption + medium.scattering, vec3(1e-30));
     add_to_pass(PASS_DENOISING_ALBEDO, index, path.throughput * albedo * (1.0 - seen.here));
     add_to_pass(PASS_DENOISING_NORMAL, index, vec3(0.0, 0.0, -channel_mean(seen.before * (1.0 - seen.here))));
@@ -208,9 +219,10 @@ void main() {
     if (keeps_paths && !hit && camera_transparent) before += add_media_emission(path, denoised);
 #endif
     if (keeps_paths) pass_paths[index] = vec4(before, uintBitsToFloat(kind));
-    SeenThroughMedia seen = seen_through_media(path, hit ? closure.distance : INFINITY_DISTANCE);
+    float far = hit ? closure.distance : INFINITY_DISTANCE;
+    SeenThroughMedia seen = seen_through_media(path, far);
 #ifdef MEDIA
-    if (!denoised && parameters.media_scatter != 0u) add_denoising_data_of_media(path, seen);
+    if (!denoised && parameters.media_scatter != 0u) add_denoising_data_of_media(path, far, seen);
 #endif
     if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction, seen))
         path.flags |= PATH_DENOISING_DATA_FOUND;

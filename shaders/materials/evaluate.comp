@@ -12,7 +12,7 @@ uniform Parameters { EvaluateParameters parameters; };
 #include "materials/surface.glsl"
 #include "materials/builder.glsl"
 #include "materials/light_surface.glsl"
-writeonly buffer Emissions { vec4 emissions[]; };
+writeonly buffer Emissions;
 
 #include "materials/generated.glsl"
 

@@ -76,6 +76,8 @@ vec3 normal_to_object(Surface surface, vec3 n) {
     return vec3(dot(x, n), dot(y, n), dot(z, n)) / dot(at.to_object0.xyz, x);
 }
 
+// Volumes have others (materials/volume_attributes.glsl).
+#ifndef VOLUME_ATTRIBUTES
 // Where an attribute of an instance's mesh lies: a word of its place and one of its components; none: 0.
 uvec2 attribute_place(Surface surface, uint layer) {
     if (surface.triangle == NO_TRIANGLE) return uvec2(0u);
@@ -100,6 +102,7 @@ vec4 attribute_value(Surface surface, uint layer) {
            + surface.barycentrics.y * attribute_corner(place, local, 1u)
            + surface.barycentrics.z * attribute_corner(place, local, 2u);
 }
+#endif
 
 // For tangents, which Cycles does not move along where a bump looks beside.
 Surface surface_itself(Surface surface) {

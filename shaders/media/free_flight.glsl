@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Distances at which the media along a ray scatter light. The includer includes materials/medium.glsl before.
 
+#include <Ray>
 // A point where light is scattered, sampled by the extinction of one channel, which is chosen evenly.
 struct FreeFlight {
     float distance;  // meters
@@ -13,9 +14,13 @@ float flight_pdf(vec3 extinction, float distance) {
     return dot(extinction * exp(-extinction * distance), vec3(1.0 / 3.0));
 }
 
+#include "media/free_flight_in_grids.glsl"
+
+#ifndef HETEROGENEOUS_MEDIA
 // u: chooses the channel, and the distance.
-FreeFlight sample_free_flight(vec3 extinction, float far, vec2 u) {
+FreeFlight sample_free_flight(uint flags, Ray ray, float far, vec2 u) {
     FreeFlight flight;
+    vec3 extinction = even_extinction(flags);
     float rate = extinction[min(int(3.0 * u.x), 2)];
     flight.passing = dot(exp(-extinction * far), vec3(1.0 / 3.0));
     flight.distance = rate > 0.0 ? -log(max(1.0 - u.y, 1e-30)) / rate : INFINITY_DISTANCE;
@@ -27,7 +32,8 @@ FreeFlight sample_free_flight(vec3 extinction, float far, vec2 u) {
 const float MOST_EVEN = 1e10;
 
 // Pdf of sample_scattered_flight, 1/m. Thin media are sampled evenly.
-float scattered_flight_pdf(vec3 extinction, float far, float distance) {
+float scattered_flight_pdf(uint flags, Ray ray, float far, float distance) {
+    vec3 extinction = even_extinction(flags);
     vec3 scattered = 1.0 - exp(-extinction * far);
     vec3 densities = mix(extinction * exp(-extinction * distance) / max(scattered, vec3(1e-30)),
                          vec3(1.0 / min(far, MOST_EVEN)), lessThanEqual(extinction * far, vec3(1e-3)));
@@ -35,9 +41,11 @@ float scattered_flight_pdf(vec3 extinction, float far, float distance) {
 }
 
 // A distance at which light is scattered before the end of the ray, which may be at INFINITY_DISTANCE.
-FreeFlight sample_scattered_flight(vec3 extinction, float far, vec2 u) {
+FreeFlight sample_scattered_flight(uint flags, Ray ray, float far, vec2 u) {
+    vec3 extinction = even_extinction(flags);
     float rate = extinction[min(int(3.0 * u.x), 2)], optical_depth = rate * far;
     float distance = optical_depth > 1e-3 ? -log(max(1.0 - u.y * (1.0 - exp(-optical_depth)), 1e-30)) / rate
                                           : min(far, MOST_EVEN) * u.y;
-    return FreeFlight(distance, scattered_flight_pdf(extinction, far, distance), 0.0);
+    return FreeFlight(distance, scattered_flight_pdf(flags, ray, far, distance), 0.0);
 }
+#endif

@@ -18,6 +18,7 @@ from rppm_addon.scene.meshes import (
 )
 from rppm_addon.scene.motion import CameraMovement, Deformation, Movement, Shutter
 from rppm_addon.scene.node_graphs import AovOutput, NodeGraph
+from support.graphs import surface_graph
 from support.lobes import Lobe, LobeKind, image_world, material
 
 
@@ -77,7 +78,7 @@ def full_scene() -> Scene:
                 linking=LightLinking(1, 63, -(1 << 63), (1 << 63) - 1),
             )
         ],
-        world=image_world(0),
+        world=dataclasses.replace(image_world(0), volume=surface_graph("volume_scatter", density=0.5)),
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
         settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),
         exposure=2.0,

@@ -13,7 +13,7 @@ from ..buffers.storage_blocks import StorageBlock
 from ..buffers.texel_buffers import TexelBuffer
 from .bindings import BLOCK_LAYOUT, ITERATION, number_bindings, number_images, numbered_blocks, numbered_textures
 from .functions import put_together
-from .texel_sources import DEFINE, declared_texel_buffers, read_as_texels
+from .texel_sources import declared_texel_buffers, read_as_texels
 
 _PACKAGE = Path(__file__).resolve().parents[2]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
@@ -114,7 +114,7 @@ def expand(
     expansion = _Expansion(defines, inserts or {})
     expansion.read(path, path)
     text = number_images(put_together(expansion.lines, whole) + "\n")
-    texel_buffers = declared_texel_buffers(text) if DEFINE in defines else {}
+    texel_buffers = declared_texel_buffers(text, defines)
     if reads_texels or large:
         text, texel_buffers = read_as_texels(text, texel_buffers, large, reads_texels)
     numbers = (beside.blocks, beside.textures) if beside else ({}, {})

@@ -16,7 +16,8 @@ _WORDS = 4
 """Words of 32 bits in the largest texels."""
 
 _IMAGE = re.compile(
-    r"layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform\s+u?imageBuffer\s+(\w+)"
+    r"#ifdef\s+(\w+)\s+layout\s*\(\s*(\w+)\s*,\s*binding\s*=\s*(\d+)\s*\)\s*restrict\s+readonly\s+uniform"
+    r"\s+u?imageBuffer\s+(\w+)"
 )
 _ARRAY = (
     r"layout\(std430\)\s*(?:restrict\s+)?%sbuffer\s+(?P<block>\w+)\s*"
@@ -37,9 +38,13 @@ _MARK = "\0"
 """In place of what is put together later."""
 
 
-def declared_texel_buffers(text: str) -> dict[str, TexelBuffer]:
-    """Find the texel buffers that a shader with DEFINE declares, by the names of the blocks that they stand for."""
-    return {name: TexelBuffer(int(unit), FORMATS[kind]) for kind, unit, name in _IMAGE.findall(text)}
+def declared_texel_buffers(text: str, defines: Collection[str]) -> dict[str, TexelBuffer]:
+    """Find the texel buffers that a shader declares, by their names, or those of the blocks that they stand for.
+
+    Each is declared behind an ``#ifdef``; defines: the macros that are defined.
+    """
+    found = _IMAGE.findall(text)
+    return {name: TexelBuffer(int(unit), FORMATS[kind]) for macro, kind, unit, name in found if macro in defines}
 
 
 def read_as_texels(

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from ...materials.traits.ashikhmin_shirley import has_ashikhmin
 from ...materials.traits.hair import has_hair
+from ...materials.traits.interiors import Interior
 from ...scene.scene import Scene
 from .viewport_demands import ViewportDemands
 
@@ -21,15 +22,20 @@ class ShaderFeatures:
     """Whether the world's light comes in through portals."""
     has_media: bool = False
     """Whether volumes fill the world or the inside of surfaces."""
+    has_heterogeneous_media: bool = False
+    """Whether any of these varies from place to place, or from object to object."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
         """Return the features of a scene, and those that a viewport demands."""
+        volumes = [(scene.world.volume, False)]
+        volumes += [(material.interior, material.reads_grids) for material in scene.materials]
         return cls(
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
-            scene.world.volume is not None or any(material.interior is not None for material in scene.materials),
+            any(volume is not None for volume, _ in volumes),
+            any(Interior.of(volume, reads_grids).varies for volume, reads_grids in volumes),
         )
 
     @property
@@ -40,5 +46,6 @@ class ShaderFeatures:
             "ASHIKHMIN_LOBES": self.has_ashikhmin,
             "PORTALS": self.has_portals,
             "MEDIA": self.has_media,
+            "HETEROGENEOUS_MEDIA": self.has_heterogeneous_media,
         }
         return {name: 1 for name, has in macros.items() if has}

@@ -162,11 +162,17 @@ class DeviceScene:
         photons: number of photons of the iteration. keep_learned: go on with what was learned of the lights.
         """
         scene = require(self.scene)
+        if changes.geometry or changes.materials:
+            changes.geometry |= self.materials.place_media(scene)
         if changes.geometry:
-            self.geometry.build(scene, self.materials.default_material, self._motion.swept)
+            self.geometry.build(
+                scene, self.materials.default_material, self._motion.swept, self.materials.media.places.slots
+            )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
                 self.resolve.build(scene, self.geometry, self.materials)
+            with self._collect_warnings("media"):
+                self._bake_media(scene)
             if not keep_learned:  # within an open shutter no mesh gets holes
                 with self._collect_warnings("bodies"):
                     self._warn_of_media(scene)
@@ -185,6 +191,12 @@ class DeviceScene:
                 )
         elif not keep_learned:
             self.lights.begin(photons)
+
+    def _bake_media(self, scene: Scene) -> None:
+        geometry = self.geometry
+        placed = [placement.instance for placement in geometry.placements]
+        bounds = geometry.bounds_low, geometry.bounds_high
+        self.materials.bake_media(scene, placed, bounds, {**geometry.blocks, **self.resolve.blocks})
 
     def _warn_of_media(self, scene: Scene) -> None:
         """Warn of media of which it is not clear where they are, or whose light is lost."""

@@ -119,6 +119,7 @@ class Cryptomatte(BufferSet):
         scene = context.scene
         if layer == MATERIALS:
             names = [*(material.name for material in scene.materials), DEFAULT_MATERIAL]
+            names += [names[material] for _, material in context.materials.media.places.copies]
         else:
             names = [placement.instance.object_name for placement in context.geometry.placements]
             if layer == ASSETS:

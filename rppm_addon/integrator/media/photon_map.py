@@ -13,6 +13,7 @@ from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
+from ..density_estimation.radii import shrinkage_in
 from ..density_estimation.splat_sums import SUM_PARAMETERS, SplatSums
 from ..device_scene.stage_context import StageContext
 from ..photons.photons import Photons
@@ -28,25 +29,20 @@ Record(
     buckets="uint",
     first_candidate="uint",
     candidates="uint",
+    draws_beams="uint",
+    least_free_path="float",
     **SUM_PARAMETERS,
 )
 StorageBlock("MediumPhotons", "uint medium_photon_count; uint medium_photons[];")
 """Numbers of the photons that media have scattered."""
 
-_EXPECTED_PHOTONS = 8
+_EXPECTED_PHOTONS = 4
 """Photons in the kernel of the first iteration, where they lie evenly in the media."""
 _WIDEST = 0.1
 """Largest radius over the radius of the scene."""
 _FEWEST_BUCKETS = 1 << 10
 _CANDIDATES = 30_000
 """Photons that a thread looks at: llvmpipe ends the loops of a thread after 65535 rounds."""
-
-
-def kernel_shrinkage(iteration: int, alpha: float) -> float:
-    """Return the radius of a three-dimensional kernel in iteration i >= 1 over that of the first: the product of
-    cbrt((k + alpha) / (k + 1)), k < i (Knaus and Zwicker 2011, section 5.2)."""
-    k = np.arange(1, iteration)
-    return float(np.exp(np.sum(np.log((k + alpha) / (k + 1))) / 3.0))
 
 
 class MediumPhotonMap(Stage):
@@ -96,8 +92,19 @@ class MediumPhotonMap(Stage):
             self._allocate.run(buckets, blocks, {"count": buckets})
             self._place.run(self.photon_count, blocks, self._cells)
 
-    def gather(self, context: StageContext, importons: Importons, sums: SplatSums, band: Band, segment: int) -> None:
-        """Add the light that media scatter toward the camera along the rays of a segment, but for direct light."""
+    def gather(
+        self,
+        context: StageContext,
+        importons: Importons,
+        sums: SplatSums,
+        band: Band,
+        segment: int,
+        beams_from: float | None,
+    ) -> None:
+        """Add the light that media scatter toward the camera along the rays of a segment, but for direct light.
+
+        beams_from: mean free path, meters, from which beams bring that light to straight rays; None where they do not.
+        """
         if not self.photon_count:
             return
         with context.timers.stage("gathering in media"):
@@ -113,6 +120,8 @@ class MediumPhotonMap(Stage):
                         **self._cells,
                         "first_candidate": first,
                         "candidates": _CANDIDATES,
+                        "draws_beams": beams_from is not None,
+                        "least_free_path": beams_from or 0.0,
                         **sums.parameters,
                     },
                 )
@@ -120,7 +129,7 @@ class MediumPhotonMap(Stage):
     def _radius(self, context: StageContext, iteration: Iteration, volume: float) -> float:
         ball = _EXPECTED_PHOTONS * volume / self.photon_count
         first = min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * context.geometry.radius)
-        return first * kernel_shrinkage(iteration.number, context.settings.alpha)
+        return first * shrinkage_in(3, iteration.number, context.settings.alpha)
 
     @property
     def _buckets(self) -> int:

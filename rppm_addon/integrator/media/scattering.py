@@ -7,8 +7,15 @@ from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 from ..photons.photons import Photons
+from .beams import PhotonBeams
 
-Record("ScatterInMediaParameters", segment="uint")
+Record(
+    "ScatterInMediaParameters",
+    segment="uint",
+    least_free_path="float",
+    beam_probability="float",
+    longest_beam="float",
+)
 
 
 class MediumScattering(Stage):
@@ -25,9 +32,20 @@ class MediumScattering(Stage):
         """Stage.is_needed: where materials or the world have a volume."""
         return sizes.features.has_media
 
-    def scatter_photons(self, context: StageContext, photons: Photons, segment: int) -> None:
-        """Scatter some of the photons whose rays have been traced; surfaces are to scatter the others."""
+    def scatter_photons(self, context: StageContext, photons: Photons, beams: PhotonBeams, segment: int) -> None:
+        """Scatter some of the photons whose rays have been traced, and store their beams; surfaces are to scatter the
+        other photons."""
         if not (self.is_on and context.materials.media.scatter):
             return
         with context.timers.stage("photon scattering in media"):
-            photons.active.run(self._scatter, {**context.blocks, **photons.blocks}, {"segment": segment})
+            beams.beams.extend_items(photons.slots)
+            photons.active.run(
+                self._scatter,
+                {**context.blocks, **photons.blocks, **beams.blocks},
+                {
+                    "segment": segment,
+                    "least_free_path": beams.least_free_path,
+                    "beam_probability": beams.probability(photons.photon_count),
+                    "longest_beam": 4.0 * context.geometry.radius,
+                },
+            )

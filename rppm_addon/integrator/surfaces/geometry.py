@@ -3,7 +3,7 @@
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -154,9 +154,16 @@ class Geometry(BufferSet):
         """Radius of the bounding sphere of the bounds, meters; never zero."""
         return max(0.5 * float(np.linalg.norm(self.bounds_high - self.bounds_low)), 1e-9)
 
-    def build(self, scene: Scene, default_material: int, swept: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+    def build(
+        self,
+        scene: Scene,
+        default_material: int,
+        swept: tuple[np.ndarray, np.ndarray] | None = None,
+        slots: list[Sequence[int]] | None = None,
+    ) -> None:
         """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
-        bounds enclose in any case, each (3,), low and high.
+        bounds enclose in any case, each (3,), low and high. ``slots``: the materials of the slots of each instance, in
+        place of its own.
 
         Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
         instances only, bending a mesh its positions and normals. Whoever changes an array gives a new one.
@@ -170,7 +177,8 @@ class Geometry(BufferSet):
             for place, index in enumerate(used)
             if bounds[place] is not None and meshes[place].triangle_count
         }
-        instances = [instance for instance in scene.instances if instance.mesh in places]
+        chosen = [index for index, instance in enumerate(scene.instances) if instance.mesh in places]
+        instances = [scene.instances[index] for index in chosen]
         which = np.array([places[instance.mesh] for instance in instances], np.int64)
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which]
         ends = np.cumsum(lengths)
@@ -178,7 +186,7 @@ class Geometry(BufferSet):
         self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
         entries = INSTANCE_ENTRY.zeros(len(instances))
         entries["first_triangle"] = ends - lengths
-        slots: list[int] = []
+        slot_materials: list[int] = []
         if instances:
             for field, member in _STARTS.items():
                 entries[field] = part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
@@ -192,14 +200,19 @@ class Geometry(BufferSet):
             for row in range(3):
                 entries[f"row{row}"] = placed[:, row]
             is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in meshes])[which]
-            slots = _fill(entries, instances, is_round, len(scene.materials), default_material)
+            used_slots = slots or [
+                usable_slots(instance.materials, len(scene.materials)) for instance in scene.instances
+            ]
+            slot_materials = _fill(
+                entries, instances, is_round, [used_slots[index] for index in chosen], default_material
+            )
         self.has_round_shapes = bool(instances) and bool(is_round.any())
         boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
         self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
         self._enclose(boxes[which], swept)
         self._inputs.upload_meshes(meshes)
         self._inputs.instances.upload(entries)
-        self._inputs.slot_materials.upload(np.array(slots or [default_material], np.uint32))
+        self._inputs.slot_materials.upload(np.array(slot_materials or [default_material], np.uint32))
         self._require_triangles(instances, lengths)
         inputs = self._inputs.blocks
         for triangles, attributes in zip(
@@ -264,11 +277,16 @@ def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> st
 
 
 def _fill(
-    entries: np.ndarray, instances: list[Instance], is_round: np.ndarray, materials: int, default_material: int
+    entries: np.ndarray,
+    instances: list[Instance],
+    is_round: np.ndarray,
+    slots_of_instances: list[Sequence[int]],
+    default_material: int,
 ) -> list[int]:
     """Sets, shadows and slots of entries; returns the materials of all slots, the same for instances alike.
 
-    is_round: (n,) bool, of which instances triangles stand for strands or points.
+    is_round: (n,) bool, of which instances triangles stand for strands or points; slots_of_instances: materials of the
+    slots of each, -1 for none.
     """
     visibility = np.array([int(instance.visibility) for instance in instances])
     shadowless = visibility & int(RayVisibility.SHADOW) == 0
@@ -276,13 +294,18 @@ def _fill(
     entries["set_code"] = np.where(shadowless, 1 + sets, -sets)  # shaders/common/light_sets.glsl
     slots: list[int] = []
     ranges: dict[tuple[int, ...], tuple[int, int]] = {}
-    for key in map(tuple, [instance.materials for instance in instances]):
+    for key in map(tuple, slots_of_instances):
         if key not in ranges:
             ranges[key] = len(slots), max(1, len(key))
-            slots += [m if 0 <= m < materials else default_material for m in key] or [default_material]
-    chosen = [ranges[tuple(instance.materials)] for instance in instances]
+            slots += [default_material if m < 0 else m for m in key] or [default_material]
+    chosen = [ranges[tuple(of_instance)] for of_instance in slots_of_instances]
     entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
     return slots
+
+
+def usable_slots(materials: Sequence[int], count: int) -> list[int]:
+    """Materials of slots, -1 in place of those that are none of ``count``."""
+    return [material if 0 <= material < count else -1 for material in materials]
 
 
 def _packed_sets(linking: LightLinking | None) -> int:

@@ -9,7 +9,7 @@ from ...scene.node_graphs import NodeGraph
 from ...scene.passes import aov_passes
 from ...scene.scene import Scene
 from ..traits.emitted import Emits, emits
-from ..traits.interiors import Interior
+from ..traits.interiors import Interior, Variation
 from .compiled_graph import NEUTRAL_TEXT, CompiledGraph, GraphError, NodeRayCounts
 from .compiler import compile_displacement, compile_graph
 
@@ -53,7 +53,7 @@ class SceneGraphs:
             self._compile_surface(material)
         self.displacements = dict(self._compile_displacements())
         """Graphs of the materials that displace, by index of the material."""
-        self.interiors = [Interior.of(material.interior) for material in materials]
+        self.interiors = [Interior.of(material.interior, material.reads_grids) for material in materials]
         """Media inside the surfaces, by index of the material."""
         self.world_interior = Interior.of(scene.world.volume)
         """The medium that fills the world."""
@@ -92,8 +92,10 @@ class SceneGraphs:
         ]
         for owner, interior in volumes:
             owners += [(owner, graph) for graph in interior.graphs]
-            if interior.varies:
-                self._scene.warn(f"{owner} varies from place to place, which is not rendered; one value stands for all")
+            if interior.phases_vary:
+                self._scene.warn(f"{owner} has a phase function that varies from place to place; one stands for all")
+        if self.world_interior.variation >= Variation.PLACE_IN_OBJECT:
+            self._scene.warn("The volume of the world varies from place to place; it is rendered around the scene only")
         for owner, graph in owners:
             if graph is not None:
                 yield UnattachedGraph(graph, owner, self._compile_light(graph, owner))

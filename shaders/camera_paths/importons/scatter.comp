@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // lint: PORTALS=1

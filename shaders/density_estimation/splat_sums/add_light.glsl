@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What photons add to the sums for passes of light and for light groups. The includer declares the block PhotonOrigins
-// and the members of SUM_PARAMETERS (integrator/density_estimation/splat_sums.py).
+// What photons add to the sums for passes of light and for light groups. The includer declares the members
+// of SUM_PARAMETERS (integrator/density_estimation/splat_sums.py).
 
 #include "density_estimation/splat_sums/light_sums.glsl"
 #include "film/light_groups/group_sums.glsl"
@@ -32,10 +32,7 @@ void add_group_word(uint place, float quanta) {
     if (added.y > 0u) atomicAdd(group_words[place + 1u], added.y);
 }
 
-// The sum of the light group that a photon comes from.
-void add_to_group_sum(uint pixel, uint photon, bool final_gather, vec3 radiance) {
-    if ((parameters.light_sums & LIGHT_SUMS_GROUPS) == 0u) return;
-    uint group = photon_origins[photon_path_of(photons[photon].path)].light_group;
+void add_to_group_sum(uint pixel, uint group, bool final_gather, vec3 radiance) {
     if (group == NO_LIGHT_GROUP) return;
     uint place = first_group_word(pixel, group, final_gather, parameters.light_groups);
     for (uint channel = 0u; channel < 3u; ++channel)

@@ -33,7 +33,9 @@ LightPart light_part(uint part, Importon importon, uint photon, uint photon_flag
 
 // In a loop of which drivers do not know the rounds: they would have the code of each sum apart.
 void add_light(uint pixel, Importon importon, uint photon, uint photon_flags, Estimate estimate) {
-    add_to_group_sum(pixel, photon, (importon.gathers & FINAL_GATHER_HIT) != 0u, estimate.radiance);
+    if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
+        add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group,
+                         (importon.gathers & FINAL_GATHER_HIT) != 0u, estimate.radiance);
     uint first = (parameters.light_sums & LIGHT_SUMS_SCATTERED) != 0u ? 0u : 2u;
     uint end = (parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u ? 3u : 2u;
     for (uint number = first; number < end; ++number) {

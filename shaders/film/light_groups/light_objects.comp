@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Adds the light objects that the rays of camera paths intersect to their groups, before the paths are scattered. All
 // other emission at the end of a ray is of one group: emission.comp adds the radiance beyond what is kept here. What
 // media along the ray emit is of no group.

@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: MEDIA=1 PORTALS=1
 // Shadow rays from points in scattering media, one on each camera ray: light that is scattered once. The point is
 // sampled as the media scatter light, or by the angle at which the light sees the ray (Kulla and Fajardo 2012,
@@ -36,7 +37,6 @@ writeonly buffer ShadowMedia;
 struct MediumSegment {
     Ray ray;
     float far;
-    vec3 extinction;
     uint flags;  // of the path
 };
 
@@ -82,7 +82,7 @@ vec3 light_center(Light light, uint emissive_triangle) {
 // Pdf of a distance by both techniques, each taken for half of the points, 1/m; of lights without a place, by the
 // first.
 float distance_pdf(MediumSegment segment, bool has_place, Equiangular angles, float distance) {
-    float pdf = scattered_flight_pdf(segment.extinction, segment.far, distance);
+    float pdf = scattered_flight_pdf(segment.flags, segment.ray, segment.far, distance);
     return has_place ? 0.5 * (pdf + equiangular_pdf(angles, distance)) : pdf;
 }
 
@@ -95,15 +95,14 @@ void main() {
     if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u
         || bounces_of(path.depth) > iteration.camera_bounces)
         return;
-    MediumCoefficients medium = path_medium(path.flags);
-    if (!(largest(medium.scattering) > 0.0)) return;
+    if (!path_may_scatter(path.flags)) return;
     float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
-    MediumSegment segment = MediumSegment(ray, far, medium.absorption + medium.scattering, path.flags);
+    MediumSegment segment = MediumSegment(ray, far, path.flags);
     uvec4 choices =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_IN_SCATTERING << 24u));
     vec4 u = scrambled_sobol4(parameters.light_sample, choices),
          v = scrambled_sobol4(parameters.light_sample, pcg4d(choices));
-    float distance = sample_scattered_flight(segment.extinction, far, u.xy).distance;
+    float distance = sample_scattered_flight(path.flags, ray, far, u.xy).distance;
     LightChoice choice = choose_light_at(lit_point(ray.origin + distance * ray.direction),
                                          chosen_environment_irradiance(ray.origin, false), v.x, v.y);
     if (!(choice.probability > 0.0)) return;
@@ -120,7 +119,8 @@ void main() {
     LightSample sampled = sample_light(light, choice.triangle, position, v.zw);
     if (!(pdf > 0.0) || !(largest(sampled.weight) > 0.0)) return;
     if (sampled.triangle != NO_TRIANGLE && (emitter_traits(sampled.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u) return;
-    vec3 scattered = scattered_phase(path.flags, dot(sampled.direction, ray.direction));
+    vec3 scattered = scattered_phase(path.flags, PlaceOnRay(ray.origin, ray.direction, distance),
+                                     dot(sampled.direction, ray.direction));
     vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, distance);
     if (parameters.crosses_media == 0u)
         transmittance *= segment_transmittance(path.flags, position, sampled.direction, sampled.distance);

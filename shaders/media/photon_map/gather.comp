@@ -1,9 +1,10 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
 // media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
-// the surface where they begin.
+// the surface where they begin, and straight camera rays in thin media to photon beams.
 
 layout(local_size_x = 64) in;
 
@@ -26,6 +27,8 @@ readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
+#include "media/thin_media.glsl"
+#include "media/straight_paths.glsl"
 #include "density_estimation/photon_grid/cells.glsl"
 readonly buffer Rays;
 readonly buffer CameraPaths;
@@ -39,7 +42,7 @@ readonly buffer Buckets;
 readonly buffer SortedPhotons;
 
 // In dense places the radius shrinks to that of a sphere of so many photons, but not further than to a part of it.
-const float MOST_EXPECTED = 48.0, LEAST_RADIUS_FACTOR = 0.25;
+const float MOST_EXPECTED = 24.0, LEAST_RADIUS_FACTOR = 0.25;
 
 // A point where photons are gathered, and what they count for.
 struct GatherPoint {
@@ -47,6 +50,7 @@ struct GatherPoint {
     vec3 direction;  // of the camera ray
     vec3 weight;     // throughput and transmittance over the pdf of the distance, m
     vec3 scattering;
+    PlaceOnRay at;
     uint flags;
     uint depth;
 };
@@ -63,13 +67,14 @@ bool exceeds_depth(uint camera_depth, uint photon) {
 vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {
     float cosine = dot(photons[photon].direction, point.direction), inverse = 1.0 / radius;
     float kernel = 15.0 / (8.0 * PI) * (1.0 - distance2 * inverse * inverse) * inverse * inverse * inverse;
-    vec3 phase = scattered_phase(point.flags, cosine) / max(point.scattering, vec3(1e-30));
+    vec3 phase = scattered_phase(point.flags, point.at, cosine) / max(point.scattering, vec3(1e-30));
     return point.weight * phase * photons[photon].flux * kernel;
 }
 
 // Adds a photon's light to the sums for passes: behind surfaces that have scattered the path, to those of the first.
 void add_light(uint pixel, uint photon, uint history, vec3 radiance) {
-    add_to_group_sum(pixel, photon, false, radiance);
+    if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
+        add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
     uint flags = photons[photon].flags, first = first_scatter(history);
     bool indirect = is_indirect(flags, photons[photon].medium_vertices);
     if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
@@ -79,15 +84,16 @@ void add_light(uint pixel, uint photon, uint history, vec3 radiance) {
         add_to_light_sum(pixel, CAUSTICS_SUM, radiance);
 }
 
-GatherPoint gather_point(uint index, CameraPath path, Ray ray, MediumCoefficients medium) {
-    vec3 extinction = medium.absorption + medium.scattering;
+GatherPoint gather_point(uint index, CameraPath path, Ray ray) {
     float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
     uvec4 scramble =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_MEDIUM_PHOTONS << 24u));
-    FreeFlight flight = sample_scattered_flight(extinction, far, scrambled_sobol(iteration.number - 1u, scramble));
-    vec3 weight = path.throughput * exp(-extinction * flight.distance) / max(flight.pdf, 1e-30);
-    return GatherPoint(ray.origin + flight.distance * ray.direction, ray.direction, weight, medium.scattering,
-                       path.flags, path.depth);
+    FreeFlight flight = sample_scattered_flight(path.flags, ray, far, scrambled_sobol(iteration.number - 1u, scramble));
+    vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance);
+    vec3 weight = path.throughput * transmittance / max(flight.pdf, 1e-30);
+    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
+    return GatherPoint(ray.origin + flight.distance * ray.direction, ray.direction, weight,
+                       path_medium(path.flags, at).scattering, at, path.flags, path.depth);
 }
 
 void main() {
@@ -97,9 +103,11 @@ void main() {
     CameraPath path = camera_paths[index];
     if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u) return;
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
-    MediumCoefficients medium = path_medium(path.flags);
-    if (!(largest(medium.scattering) > 0.0)) return;
-    GatherPoint point = gather_point(index, path, ray, medium);
+    if (!path_may_scatter(path.flags)) return;
+    if (parameters.draws_beams != 0u && is_straight(path.flags) && is_thin(path.flags, parameters.least_free_path))
+        return;
+    GatherPoint point = gather_point(index, path, ray);
+    if (!(largest(point.scattering) > 0.0)) return;
     float radius = parameters.radius;
     uint history = parameters.segment == 0u ? 0u : departing_history(importons[index].history);
     ivec3 low = cell_of(point.position - radius, parameters.side);

@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Photons in media: some of them are scattered before they come to a surface. They are stored there, and go on in a
 // direction of the phase function; the stages of surfaces leave them alone in this segment.
 
@@ -22,20 +23,50 @@ readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
+#include "media/thin_media.glsl"
 readonly buffer Hits;
 buffer Rays;
 buffer PhotonPaths;
 buffer PhotonDifferentials;
 writeonly buffer Photons;
 readonly buffer PhotonRange;
+#include <PhotonBeam>
+buffer PhotonBeams;
+readonly buffer PhotonOrigins;
+
+// The flags of a path as those of what it stores in media.
+uint stored_flags(uint path_flags) {
+    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
+    return (path_flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT | PHOTON_INDIRECT))
+           | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
+}
+
+// Whether media scatter no light of a path before something else has.
+bool is_hidden(PhotonPath path) {
+    return (path.medium_vertices & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u;
+}
 
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
-    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
-    uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT | PHOTON_INDIRECT))
-                 | ((path.flags << PHOTON_HISTORY_SHIFT) & history);
+    uint flags = PHOTON_ACTIVE | stored_flags(path.flags);
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
                path.depth, path.medium_vertices | PHOTON_IN_MEDIUM, 0u);
+}
+
+// Whether shadow rays bring the light of a path that comes straight from its light.
+bool is_for_shadow_rays(PhotonPath path) { return iteration.next_event != 0u && (path.flags & PHOTON_DIRECT) != 0u; }
+
+// The way of the photon becomes a beam with a probability, which is larger for caustics.
+void store_beam(uint index, PhotonPath path, Ray ray, float extent, float u) {
+    if (is_for_shadow_rays(path) || is_hidden(path) || !is_thin(path.flags, parameters.least_free_path)) return;
+    bool caustic = (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
+    float probability = min(parameters.beam_probability * (caustic ? 4.0 : 1.0), 1.0);
+    if (u >= probability) return;
+    PhotonOrigin origin = photon_origins[index];
+    photon_beams[atomicAdd(beam_count, 1u)] = PhotonBeam(
+        ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
+        path.flux / probability, stored_flags(path.flags), index | parameters.segment << PHOTON_SEGMENT_SHIFT,
+        path.depth, path.medium_vertices, origin.light_group, origin.max_bounces, 0u, 0u, 0u);
 }
 
 vec3 turned(vec3 direction, float cosine, float angle) {
@@ -56,12 +87,12 @@ void end_path(uint index, PhotonPath path, Ray ray) {
 }
 
 // Sends the path on from where a medium has scattered it. Russian roulette keeps the flux of photons even.
-void sample_next_ray(uint index, PhotonPath path, Ray ray, vec3 position, vec3 weight, RandomSequence random) {
+void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 weight, RandomSequence random) {
     vec3 flux = path.flux * weight;
     float u = next_random(random);
-    PhaseFunction phase = sample_path_phase_function(path.flags, flux, u);
-    flux *=
-        phase.scattering * (dot(flux, path_medium(path.flags).scattering) / max(dot(flux, phase.scattering), 1e-30));
+    PhaseFunction phase = sample_path_phase_function(path.flags, at, flux, u);
+    vec3 scattering = path_medium(path.flags, at).scattering;
+    flux *= phase.scattering * (dot(flux, scattering) / max(dot(flux, phase.scattering), 1e-30));
     float survival = min(largest(flux) / largest(path.flux), 1.0);
     float angle = 2.0 * PI * next_random(random);
     bool survives = next_random(random) < survival;
@@ -83,7 +114,8 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, vec3 position, vec3 w
     photon_paths[index].medium_vertices = medium_vertices;
     photon_differentials[index].known = 0u;
     photon_differentials[index].before = 0.0;
-    rays[index] = Ray(position, NO_TRIANGLE, direction, survives ? INFINITY_DISTANCE : 0.0);
+    rays[index] =
+        Ray(at.origin + at.distance * at.direction, NO_TRIANGLE, direction, survives ? INFINITY_DISTANCE : 0.0);
 }
 
 void main() {
@@ -93,27 +125,29 @@ void main() {
     PhotonPath path = photon_paths[index];
     Ray ray = rays[index];
     if (!(ray.maximum_distance > 0.0) || !(largest(path.flux) > 0.0)) return;
-    MediumCoefficients medium = path_medium(path.flags);
-    if (!(largest(medium.scattering) > 0.0)) return;
-    vec3 extinction = medium.absorption + medium.scattering;
+    if (!path_may_scatter(path.flags)) return;
     bool escapes = hits[index].triangle == NO_TRIANGLE;
     float far = escapes ? INFINITY_DISTANCE : hits[index].distance;
     RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_MEDIA, parameters.segment, index);
-    FreeFlight flight = sample_free_flight(extinction, far, next_random2(random));
-    if (!(flight.pdf > 0.0)) {
+    FreeFlight flight = sample_free_flight(path.flags, ray, far, next_random2(random));
+    bool passes = !(flight.pdf > 0.0);
+    store_beam(index, path, ray, passes ? far : flight.distance, next_random(random));
+    if (passes) {
         // Surfaces weaken the flux by the transmittance, but nothing weakens what escapes.
         vec3 weight = vec3(1.0 / max(flight.passing, 1e-30));
-        if (escapes) weight *= exp(-extinction * far);
+        if (escapes) weight *= segment_transmittance(path.flags, ray.origin, ray.direction, far);
         photon_paths[index].flux = path.flux * weight;
         return;
     }
-    if ((path.medium_vertices & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u) {
+    if (is_hidden(path)) {
         end_path(index, path, ray);
         return;
     }
     vec3 position = ray.origin + flight.distance * ray.direction;
-    vec3 weight = exp(-extinction * flight.distance) / flight.pdf;
+    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
+    vec3 weight = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance) / flight.pdf;
     float distance = photon_differentials[index].before + flight.distance;
-    store_photon(index, path, position, ray.direction, path.flux * weight * medium.scattering, distance);
-    sample_next_ray(index, path, ray, position, weight, random);
+    store_photon(index, path, position, ray.direction, path.flux * weight * path_medium(path.flags, at).scattering,
+                 distance);
+    sample_next_ray(index, path, ray, at, weight, random);
 }

@@ -199,7 +199,9 @@ def test_warnings_are_reported(lit, monkeypatch):
     replace_methods(monkeypatch, report=lambda kind, text: reports.append((kind, text)))
     lit.camera.scale = (0.0, 0.0, 0.0)
     for index in range(20):
-        lit.collection.objects.link(bpy.data.objects.new(f"Smoke{index}", bpy.data.volumes.new("Smoke")))
+        smoke = bpy.data.volumes.new("Smoke")
+        smoke.filepath = "//missing.vdb"
+        lit.collection.objects.link(bpy.data.objects.new(f"Smoke{index}", smoke))
     bpy.ops.render.render()
     texts = [text for kind, text in reports if kind == {"WARNING"}]
     assert any("it sees the world only" in text for text in texts)

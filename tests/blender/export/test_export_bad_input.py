@@ -51,12 +51,6 @@ def test_a_material_index_beyond_the_slots(scene):
     assert exported.meshes[0].triangle_slots.min() >= 0 and exported.instances[0].materials == [0]
 
 
-def test_unrendered_object_types_are_named(scene):
-    add_object(scene, "Unrendered", bpy.data.volumes.new("Unrendered"))
-    exported = export(scene)
-    assert exported.instances == [] and any('"Unrendered"' in text for text in exported.warnings)
-
-
 def test_lights_far_away_or_nowhere(scene):
     add_light(scene, "POINT", "Nowhere").location = (float("nan"), 0.0, 0.0)
     exported = export(scene)

@@ -135,12 +135,12 @@ def test_warnings_name_what_can_be_selected(facing):
     second.data.materials.append(material)
     add_light(facing, "AREA", "Flat", size=0.0)
     world = set_world(facing)
-    absorption = add_node(world.node_tree, "ShaderNodeVolumeAbsorption")
-    link(world.node_tree, absorption.outputs[0], world.node_tree.nodes["World Output"].inputs["Volume"])
+    sky = add_node(world.node_tree, "ShaderNodeTexEnvironment", "Sky")  # without an image
+    link(world.node_tree, sky.outputs[0], world.node_tree.nodes["Background"].inputs["Color"])
     rendered(facing)
     buttons = drawn(panels.warnings.RPPM_PT_warnings, context_of(facing)).operators
     named = {(button.kind, button.name): button.node for button in buttons}
-    assert named == {("MATERIAL", "Odd"): "Shade", ("OBJECT", "Flat"): "", ("WORLD", world.name): ""}
+    assert named == {("MATERIAL", "Odd"): "Shade", ("OBJECT", "Flat"): "", ("WORLD", world.name): "Sky"}
     tree.nodes.active = tree.nodes["Output"]
     assert bpy.ops.rppm.select_subject(kind="MATERIAL", name="Odd", node="Shade") == {"FINISHED"}
     assert set(bpy.context.selected_objects) == {first, second}

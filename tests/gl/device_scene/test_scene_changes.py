@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scenes
 from rendering import radiance_of
+from support.graphs import surface_graph
 from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
@@ -43,6 +44,7 @@ def other_mesh(scene: Scene) -> Scene:
 
 VIEW, PLACE = scenes.looking((0.4, -3.2, 0.3), (0, 0, 0)), scenes.placed(0, 0, 0.2, 0.3)
 RED = material("red", Lobe(LobeKind.DIFFUSE, color=(0.9, 0.1, 0.05)), Lobe(LobeKind.GLOSSY, 0.2, roughness=0.3))
+FOG = surface_graph("volume_absorption", color=(0.5, 0.2, 0.1), density=0.3)
 CHANGES = {
     "moved camera": lambda s: with_(s, camera=dataclasses.replace(s.camera, matrix=VIEW)),
     "moved object": lambda s: with_(s, instances=replaced(s.instances, len(s.instances) - 1, matrix=PLACE)),
@@ -51,6 +53,7 @@ CHANGES = {
     "brighter light": lambda s: with_(s, lights=replaced(s.lights, 0, strength=3.0 * s.lights[0].strength)),
     "other image": lambda s: with_(s, images=[Image("sky", s.images[0].pixels[:, ::-1].copy(), "LINEAR")]),
     "other world": lambda s: with_(s, world=dataclasses.replace(s.world, radiance=np.array([0.1, 0.4, 0.2]))),
+    "other volume of the world": lambda s: with_(s, world=dataclasses.replace(s.world, volume=FOG)),
     "other resolution": lambda s: with_(s, camera=dataclasses.replace(s.camera, width=17, height=13)),
     "fewer photons": lambda s: with_(s, settings=s.settings.with_values(photons=300, photon_path_length=2)),
     "fewer objects": lambda s: with_(s, instances=s.instances[:-1]),

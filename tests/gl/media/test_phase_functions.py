@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Phase functions: their norm, their mean cosine, and samples that follow them."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from support.media.phase_values import values_and_samples
 
-from rppm_addon.gl.buffers.records import Record
 from rppm_addon.materials import phase_functions as phases
 from rppm_addon.materials.records import PhaseFunctionKind
 
-Record("PhaseFunctionsParameters", parameters="vec4", count="uint", kind="uint")
-SHADER = str(Path(__file__).parent / "phase_functions.comp")
 COUNT = 1 << 16
 FIRST = 1e-6
 """First of the squared sines of half the angle: the cosine tells smaller ones no better."""
@@ -24,19 +20,6 @@ def half_sines() -> np.ndarray:
     ends = np.geomspace(FIRST, 0.5, COUNT // 2)
     sines = np.concatenate([ends, 1.0 - ends[-2::-1], [1.0]])
     return 0.5 * (1.0 - (1.0 - 2.0 * sines).astype(np.float32).astype(np.float64))
-
-
-def values_and_samples(context, library, kind: KIND, parameters: phases.Parameters) -> tuple[np.ndarray, np.ndarray]:
-    """The function at the cosines of ``half_sines``, 1/sr, and cosines for evenly spread random numbers, from the
-    GPU."""
-    cosines = context.moderngl.buffer((1.0 - 2.0 * half_sines()).astype(np.float32).tobytes())
-    values, samples = (context.moderngl.buffer(reserve=4 * COUNT) for _ in range(2))
-    blocks = {"Cosines": cosines, "Values": values, "Samples": samples}
-    library.compute(SHADER).run(COUNT, blocks, {"count": COUNT, "kind": int(kind), "parameters": parameters})
-    read = tuple(np.frombuffer(buffer.read(), np.float32).astype(np.float64) for buffer in (values, samples))
-    for buffer in (cosines, values, samples):
-        buffer.release()
-    return read
 
 
 def fractions(values: np.ndarray, before: float) -> np.ndarray:
@@ -76,7 +59,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_phase_functions_scatter_all_light_and_samples_follow_them(context, library, name):
     kind, parameters = CASES[name]
-    values, samples = values_and_samples(context, library, kind, parameters)
+    values, samples = values_and_samples(context, library, kind, parameters, 1.0 - 2.0 * half_sines())
     before = 4.0 * np.pi * values[0] * FIRST
     g = parameters[0]
     if kind is KIND.HENYEY_GREENSTEIN and g > 0.0:
@@ -95,7 +78,9 @@ def test_phase_functions_scatter_all_light_and_samples_follow_them(context, libr
 
 @pytest.mark.parametrize("g", [*G, -1.0, 1.0])
 def test_the_mean_cosine_is_the_anisotropy(context, library, g):
-    _, samples = values_and_samples(context, library, KIND.HENYEY_GREENSTEIN, phases.henyey_greenstein(g))
+    _, samples = values_and_samples(
+        context, library, KIND.HENYEY_GREENSTEIN, phases.henyey_greenstein(g), 1.0 - 2.0 * half_sines()
+    )
     assert samples.mean() == pytest.approx(g, abs=1.1e-3)
 
 
@@ -103,13 +88,13 @@ def test_the_mean_cosine_is_the_anisotropy(context, library, g):
 @pytest.mark.parametrize("g", G)
 def test_the_mean_cosine_of_draine(context, library, g, alpha):
     """Draine 2003, Eq. 7."""
-    _, samples = values_and_samples(context, library, KIND.DRAINE, phases.draine(g, alpha))
+    _, samples = values_and_samples(context, library, KIND.DRAINE, phases.draine(g, alpha), 1.0 - 2.0 * half_sines())
     expected = g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0)
     assert samples.mean() == pytest.approx(expected, abs=2e-3)
 
 
 def test_rayleigh_scatters_as_dipoles_do(context, library):
-    values, samples = values_and_samples(context, library, KIND.RAYLEIGH, phases.rayleigh())
+    values, samples = values_and_samples(context, library, KIND.RAYLEIGH, phases.rayleigh(), 1.0 - 2.0 * half_sines())
     cosines = 1.0 - 2.0 * half_sines()
     np.testing.assert_allclose(values, 3.0 / (16.0 * np.pi) * (1.0 + cosines**2), rtol=1e-5)
     assert (samples**2).mean() == pytest.approx(0.4, abs=1e-4)
@@ -118,5 +103,7 @@ def test_rayleigh_scatters_as_dipoles_do(context, library):
 @pytest.mark.parametrize("backscatter", [0.005, 0.02, 0.1, 0.3])
 @pytest.mark.parametrize("ior", [1.05, 1.33, 1.6, 1.9])
 def test_fournier_and_forand_scatter_backward_what_they_are_asked_to(context, library, ior, backscatter):
-    _, samples = values_and_samples(context, library, KIND.FOURNIER_FORAND, phases.fournier_forand(ior, backscatter))
+    _, samples = values_and_samples(
+        context, library, KIND.FOURNIER_FORAND, phases.fournier_forand(ior, backscatter), 1.0 - 2.0 * half_sines()
+    )
     assert (samples < 0.0).mean() == pytest.approx(backscatter, abs=1e-3)

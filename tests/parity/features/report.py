@@ -55,10 +55,9 @@ with the objects that use it. Nodes are named likewise; the remarks further down
 |---|---|
 """
 VOLUMES = (
-    ("Volumes that scatter", "left out"),
     ("What varies within a volume", "one value stands for all of it"),
     ("Light of a volume that more than one diffuse surface scatters", "left out"),
-    ("A world's volume", "left out"),
+    ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
     ("Volume objects, and smoke and fire of fluid domains", "left out; the mesh of the domain is not shown either"),
 )
 """Uses of volumes that exports name as they come upon them, and what becomes of them."""

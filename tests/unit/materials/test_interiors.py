@@ -6,10 +6,11 @@ import pytest
 from support.graphs import surface_graph
 
 from rppm_addon.materials.compiler.compiler import compile_graph
+from rppm_addon.materials.compiler.scene_graphs import SceneGraphs
 from rppm_addon.materials.nodes import KINDS
 from rppm_addon.materials.records import PhaseFunctionKind
-from rppm_addon.materials.traits.interiors import Interior
-from rppm_addon.scene import Link, NodeGraph
+from rppm_addon.materials.traits.interiors import Interior, Variation
+from rppm_addon.scene import Camera, Link, Material, NodeGraph, Scene
 
 KIND = PhaseFunctionKind
 
@@ -154,11 +155,45 @@ def test_textures_vary():
         assert not Interior.of(surface_graph(kind)).varies
 
 
+@pytest.mark.parametrize("linked", ["density", "anisotropy", None])
+def test_what_varies_is_named(linked):
+    fog = NodeGraph()
+    noise = fog.add("tex_noise", "fac", vector=fog.add("tex_coord", "object"))
+    fog.surface = fog.add("volume_scatter", "volume", **({} if linked is None else {linked: noise}))
+    scene = Scene(Camera(np.eye(4), (-1, 1, -1, 1), 1, 1), materials=[Material("Fog", interior=fog)])
+    SceneGraphs(scene, scene.materials)
+    told = {
+        "density": ['The volume of material "Fog" varies from place to place'],
+        "anisotropy": ['The volume of material "Fog" has a phase function that varies from place to place'],
+        None: [],
+    }[linked]
+    assert len(scene.warnings) == len(told)
+    assert all(warning.startswith(start) for warning, start in zip(scene.warnings, told, strict=True))
+
+
 def test_grids_that_are_not_there_do_not_vary():
     graph = NodeGraph()
     density = graph.add("grid_attribute", "fac", attribute="density")
     graph.surface = graph.add("volume_principled", "volume", density_grid=density)
     assert not Interior.of(graph).varies
+    assert Interior.of(graph, reads_grids=True).variation is Variation.PLACE_IN_OBJECT
+
+
+@pytest.mark.parametrize(
+    ("kind", "output", "expected"),
+    [
+        ("tex_coord", "object", Variation.PLACE_IN_OBJECT),
+        ("generated_coord", "generated", Variation.PLACE_IN_OBJECT),
+        ("new_geometry", "position", Variation.PLACE),
+        ("object_info", "color", Variation.OBJECT),
+        ("light_path", "ray_length", Variation.NOTHING),
+    ],
+)
+def test_variables_of_a_volume(kind, output, expected):
+    graph = NodeGraph()
+    density = graph.add(kind, output)
+    graph.surface = graph.add("volume_absorption", "volume", density=density)
+    assert Interior.of(graph).variation is expected
 
 
 def test_all_volume_kinds_compile():

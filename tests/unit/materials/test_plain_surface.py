@@ -105,3 +105,7 @@ def test_every_shader_has_one(name):
     found = surface_of(lambda graph: graph.add(name, next(iter(KINDS[name].outputs))))
     assert np.isfinite([*found.color, *found.emission, found.metallic, found.roughness]).all()
     assert 0.0 <= found.opacity <= 1.0
+
+
+def test_a_volume_alone_is_clear():
+    assert surface_of(lambda graph: graph.add("volume_boundary", "bsdf")).opacity == 0.0

@@ -11,9 +11,11 @@ from ....scene import Instance, Light, RayVisibility
 from ..common.hashing import hashed
 from ..context import ExportContext
 from ..geometry.meshes.attributes import INSTANCER_GENERATED, INSTANCER_UV, attribute_of
-from ..geometry.meshes.rendered_meshes import has_no_faces, is_gas_domain
+from ..geometry.meshes.rendered_meshes import has_no_faces
 from ..geometry.strands.particle_hair import HairSystem
 from ..geometry.strands.round_meshes import ROUND_TYPES, Hair, RoundSource
+from ..geometry.volumes.gas_domains import is_gas_domain
+from ..geometry.volumes.volume_meshes import GridSource
 from ..shading.lights.lights import export_light
 from ..shading.nodes.material_table import MaterialTable
 from ..shading.nodes.missing_attributes import MissingAttributes
@@ -26,10 +28,8 @@ from .mesh_table import MeshTable
 
 CONVERTED_TYPES = {"CURVE", "FONT", "META", "SURFACE"}
 """Object types that are rendered as the mesh that Blender makes of them."""
-SURFACE_TYPES = {"MESH", *CONVERTED_TYPES, *ROUND_TYPES}
-"""Object types that are rendered as surfaces."""
-UNSUPPORTED_TYPES = {"VOLUME": "volumes"}
-"""Object types that Cycles renders and RPPM does not, with what users call them."""
+SURFACE_TYPES = {"MESH", "VOLUME", *CONVERTED_TYPES, *ROUND_TYPES}
+"""Object types that are rendered as surfaces; that of a volume is the box around it."""
 
 _USE_UV = {"tex_coord", "attribute", "normal_map", "tangent", "uvmap", "tex_image", "tex_image_tiles"}
 _COORDINATES: dict[str, Callable[[bpy.types.DepsgraphObjectInstance], tuple[float, ...]]] = {
@@ -91,7 +91,6 @@ class InstanceReader:
         """
         kind = source.type
         if kind not in SURFACE_TYPES or (kind == "CURVES" and not self._context.curves.shown):
-            self._warn_of_unsupported(source)
             return None
         visibility = visibility_of(source)
         if not visibility:
@@ -102,6 +101,8 @@ class InstanceReader:
             return self._described(source, before.mesh, before.materials, visibility, multiplied)
         holder = source if multiplied is None else multiplied.instance_object
         is_own = multiplied is None or holder.data == source.data
+        if kind == "VOLUME" or (kind == "MESH" and is_own and is_gas_domain(source)):
+            return self._describe_volume(source, visibility, multiplied)
         if kind == "MESH" and not self._has_faces(source, is_own):
             return None  # and its materials are not needed
         materials, mesh = self._material_slots(source), None
@@ -113,6 +114,19 @@ class InstanceReader:
                     self.faceless.note(source)
                 return None
         return self._described(source, mesh, materials, visibility, multiplied)
+
+    def _describe_volume(
+        self,
+        source: bpy.types.Object,
+        visibility: RayVisibility,
+        multiplied: bpy.types.DepsgraphObjectInstance | None,
+    ) -> InstanceDescription | None:
+        """Describe a volume, or the gas of a fluid domain; None where it has no voxels."""
+        materials = [self._materials.of_volume(place) for place in self._material_slots(source)]
+        mesh = self._mesh_index(
+            source, GridSource(source), materials, source if multiplied is None else multiplied.parent
+        )
+        return None if mesh is None else self._described(source, mesh, materials, visibility, multiplied)
 
     def describe_hair(
         self,
@@ -211,19 +225,8 @@ class InstanceReader:
             self.missing.note(description)
         return description
 
-    def _warn_of_unsupported(self, source: bpy.types.Object) -> None:
-        if source.type in UNSUPPORTED_TYPES:
-            what = UNSUPPORTED_TYPES[source.type]
-            self._context.report.warn(f'Object "{source.name}": {what} are not rendered yet; it is left out')
-
     def _has_faces(self, source: bpy.types.Object, is_own: bool) -> bool:
         """Whether a mesh has faces to be rendered. is_own: it is the object's, none that nodes of geometry made."""
-        if is_own and is_gas_domain(source):
-            self._context.report.warn(
-                f'Object "{source.name}": smoke and fire of fluid domains are not rendered yet; as in Cycles the '
-                "domain's mesh is not shown"
-            )
-            return False
         if not has_no_faces(source.data):
             return True
         if is_own:
@@ -233,7 +236,7 @@ class InstanceReader:
     def _mesh_index(
         self,
         source: bpy.types.Object,
-        data: bpy.types.Mesh | RoundSource | None,
+        data: bpy.types.Mesh | RoundSource | GridSource | None,
         materials: list[int],
         owner: bpy.types.Object,
     ) -> int | None:
@@ -243,7 +246,7 @@ class InstanceReader:
         """
         attributes, _ = self._wanted_attributes(materials)
         index = self._meshes.index(source, data, attributes, owner.original.session_uid)
-        if index is not None and data is not None and not isinstance(data, bpy.types.Mesh):
+        if index is not None and data is not None and not isinstance(data, bpy.types.Mesh | GridSource):
             self._materials.put_on_round_shapes(materials)
         return index
 

@@ -19,6 +19,7 @@ from ..geometry.meshes.meshes import NO_MESH, export_mesh
 from ..geometry.meshes.rendered_meshes import is_made_anew, rendered_mesh
 from ..geometry.strands.round_meshes import RoundSource, export_round, export_round_attribute
 from ..geometry.strands.tubes import Rings
+from ..geometry.volumes.volume_meshes import GridSource, export_grids
 
 
 class MeshTable:
@@ -97,7 +98,7 @@ class MeshTable:
     def index(
         self,
         source: bpy.types.Object,
-        mesh: bpy.types.Mesh | RoundSource | None,
+        mesh: bpy.types.Mesh | RoundSource | GridSource | None,
         attributes: set[str],
         owner: int,
     ) -> int | None:
@@ -138,7 +139,7 @@ class MeshTable:
     def _add(
         self,
         source: bpy.types.Object,
-        mesh: bpy.types.Mesh | RoundSource | None,
+        mesh: bpy.types.Mesh | RoundSource | GridSource | None,
         key: int,
         owner: int,
         slices: Slices,
@@ -150,6 +151,8 @@ class MeshTable:
             with self._report.about(("mesh", owner, name, type(mesh).__name__)):
                 if isinstance(mesh, bpy.types.Mesh):
                     exported = export_mesh(mesh, name, self._report, before, slices, record)
+                elif isinstance(mesh, GridSource):
+                    exported = export_grids(mesh, name, self._report, before)
                 else:
                     exported = export_round(mesh, name, self._context.curves, self._report, before, slices, record)
         self._owners[key] = {owner}
@@ -158,7 +161,7 @@ class MeshTable:
             self._places[key] = None
             return
         place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
-        if exported.shape is MeshShape.SURFACE:
+        if exported.shape is MeshShape.SURFACE and exported.volume is None:
             exported.dicing = export_dicing(source, self._context.is_render)
         self.meshes[place : place + 1] = [exported]
         self._tried[place] = set()
@@ -169,12 +172,15 @@ class MeshTable:
     def _complete(
         self,
         place: int,
-        mesh: bpy.types.Mesh | RoundSource,
+        mesh: bpy.types.Mesh | RoundSource | GridSource,
         attributes: set[str],
         owner: int,
         slices: Slices,
     ) -> None:
         """Read attributes that were not asked for before; meshes that were handed out stay as they are."""
+        if isinstance(mesh, GridSource):  # which has all of its grids
+            self._tried[place] |= attributes
+            return
         known, before = self.meshes[place], self._before.get(owner)
         found, record = dict(known.attributes), self._record(self._keys[place], owner)
         for name in sorted(attributes - known.attributes.keys()):
@@ -191,8 +197,8 @@ class MeshTable:
 
 @contextlib.contextmanager
 def _read_of(
-    source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | None
-) -> Iterator[bpy.types.Mesh | RoundSource | None]:
+    source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | GridSource | None
+) -> Iterator[bpy.types.Mesh | RoundSource | GridSource | None]:
     """The data to be read of an object: those given, or else a mesh that Blender makes of it; None without one."""
     if mesh is None or isinstance(mesh, bpy.types.Mesh):
         with rendered_mesh(source, mesh) as rendered:

@@ -275,11 +275,3 @@ def test_meshes_without_faces_are_as_they_are_meant(scene):
     link(multiply.id_data, cube.outputs[0], multiply.inputs["Instance"])
     exported = export(scene)
     assert exported.warnings == [] and len(exported.instances) == 4
-
-
-def test_a_mesh_that_nodes_make_a_volume_of_is_named_once(scene):
-    tree, _, last = node_group(outputs=[("Geometry", "Geometry")], tree_type="GeometryNodeTree")
-    link(tree, add_node(tree, "GeometryNodeVolumeCube", Density=1.0).outputs[0], last.inputs[0])
-    add_mesh(scene, "Cloud").modifiers.new("Cloud", "NODES").node_group = tree
-    (warning,) = export(scene).warnings
-    assert 'Object "Cloud": volumes are not rendered yet' in warning

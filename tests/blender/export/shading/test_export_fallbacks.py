@@ -13,8 +13,7 @@ from rppm_addon.materials.compiler.compiler import compile_graph
 from rppm_addon.materials.nodes import KINDS
 
 NOT_RENDERED = {
-    "BSDF_RAY_PORTAL", "EEVEE_SPECULAR", "SCRIPT", "SHADERTORGB", "SQUEEZE",
-    "VOLUME_COEFFICIENTS", "PRINCIPLED_VOLUME", "VOLUME_SCATTER", "CAMERA",
+    "BSDF_RAY_PORTAL", "EEVEE_SPECULAR", "SCRIPT", "SHADERTORGB", "SQUEEZE", "CAMERA",
 }  # fmt: skip
 """Node types that a neutral value stands in for."""
 

@@ -7,8 +7,8 @@ bpy = pytest.importorskip("bpy")
 
 import numpy as np  # noqa: E402
 
-from rppm_addon.materials.nodes.node_kinds import COLOR, FLOAT, VECTOR  # noqa: E402
 from rppm_addon.materials.nodes import shaders, volumes  # noqa: E402
+from rppm_addon.materials.nodes.node_kinds import COLOR, FLOAT, VECTOR  # noqa: E402
 
 KINDS = shaders.KINDS | {kind: node for kind, node in volumes.KINDS.items() if kind != "volume_boundary"}
 BL_IDNAMES = {

@@ -17,14 +17,6 @@ def has_no_faces(mesh: bpy.types.Mesh) -> bool:
     return len(mesh.polygons) == 0 and not mesh.is_editmode
 
 
-def is_gas_domain(source: bpy.types.Object) -> bool:
-    """True where Cycles takes a mesh object for the smoke and fire in it, baked or not, and does not show its mesh."""
-    for modifier in source.modifiers:
-        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
-            return modifier.domain_settings.domain_type == "GAS"
-    return False
-
-
 @contextlib.contextmanager
 def rendered_mesh(source: bpy.types.Object, data: bpy.types.Mesh | None) -> Iterator[bpy.types.Mesh | None]:
     """The mesh of an evaluated object with its vertices, faces and attributes, valid within the with block.

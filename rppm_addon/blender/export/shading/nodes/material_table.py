@@ -25,6 +25,8 @@ class MaterialTable:
         """Attributes that rays of nodes read wherever they hit, so that all meshes are asked for them."""
         self._context = context
         self._places: dict[int, int] = {}
+        self._of_volumes: dict[int, int] = {}
+        """Places of materials as they are on volumes, by those of the materials."""
         self._on_round_shapes: set[int] = set()
         """Places of those that are on strands or points."""
         self.untracked: set[int] = set()
@@ -42,6 +44,14 @@ class MaterialTable:
             self.sampled |= _sampled_of(exported)
         return self._places[key]
 
+    def of_volume(self, place: int) -> int:
+        """Index of a material as it is on a volume, which has no surface but grids."""
+        if place not in self._of_volumes:
+            self._of_volumes[place] = len(self.materials)
+            self.materials.append(_of_volume(self.materials[place]))
+            self.attributes.append({})
+        return self._of_volumes[place]
+
     def put_on_round_shapes(self, places: list[int]) -> None:
         """Materials are on strands or points as well."""
         for place in set(places) - self._on_round_shapes:
@@ -57,6 +67,8 @@ class MaterialTable:
         exported.on_round_shapes = place in self._on_round_shapes
         before = self.attributes[place], self.sampled
         self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
+        if place in self._of_volumes:
+            self.materials[self._of_volumes[place]] = _of_volume(exported)
         self.sampled |= _sampled_of(exported)
         return (self.attributes[place], self.sampled) != before
 
@@ -69,6 +81,12 @@ class MaterialTable:
                 exported = export_material(material, self._context)
         (self.untracked.add if self._context.untracked_reads > reads else self.untracked.discard)(key)
         return exported
+
+
+def _of_volume(material: Material) -> Material:
+    graph = NodeGraph()
+    graph.surface = graph.add("volume_boundary", "bsdf")
+    return dataclasses.replace(material, graph=graph, reads_grids=True)
 
 
 def _attributes_of(material: Material) -> dict[str, str]:

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Volumes: grids of voxels, with the boxes around them."""

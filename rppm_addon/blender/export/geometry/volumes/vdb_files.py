@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Grids of OpenVDB files, read by the module that Blender brings along."""
+
+import importlib
+import tempfile
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .....scene.errors import RppmError
+from .....scene.volumes import VolumeGrid
+
+MAX_VOXELS = 1 << 24
+"""Voxels of a grid, at most; of larger ones each second voxel is read, along each axis, or less."""
+
+
+class VolumeError(RppmError):
+    """A volume that cannot be read; the message says why and names the remedy."""
+
+
+def read_grids(volume: bpy.types.Volume) -> tuple[dict[str, VolumeGrid], list[str]]:
+    """The grids of an evaluated volume by name, and messages about what is left out.
+
+    Raises VolumeError.
+    """
+    grids = volume.grids
+    if not grids.load() or not all(grid.load() for grid in grids):  # the first reads their names
+        path = bpy.path.abspath(volume.filepath)
+        raise VolumeError(f"{path}: {grids.error_message or 'it cannot be read'}; choose another file")
+    openvdb = _module()
+    with tempfile.TemporaryDirectory(prefix="rppm-") as folder:
+        path = str(Path(folder) / "volume.vdb")
+        try:  # as modifiers made it, and also where there is no file
+            is_saved = grids.save(path)
+        except RuntimeError as error:
+            raise VolumeError(f"{volume.filepath}: {str(error).strip()}; choose another file") from error
+        if not is_saved:
+            raise VolumeError(f"{volume.filepath}: {grids.error_message or 'it cannot be read'}; choose another file")
+        found, messages = {}, []
+        for name in dict.fromkeys(metadata.name for metadata in openvdb.readAllGridMetadata(path)):
+            if not _is_velocity(volume, name):
+                grid = _read(openvdb, openvdb.read(path, name), name, messages)
+                if grid is not None:
+                    found[name] = grid
+    return found, messages
+
+
+def _module() -> ModuleType:
+    try:
+        return importlib.import_module("openvdb")
+    except ImportError:
+        pass
+    if hasattr(bpy.utils, "expose_bundled_modules"):
+        bpy.utils.expose_bundled_modules()
+    for name in ("openvdb", "pyopenvdb"):
+        try:
+            return importlib.import_module(name)
+        except ImportError:
+            continue
+    raise VolumeError("this Blender brings no module openvdb along; use Blender 4.4 or newer for volumes")
+
+
+def _is_velocity(volume: bpy.types.Volume, name: str) -> bool:
+    names = {volume.velocity_grid, volume.velocity_x_grid, volume.velocity_y_grid, volume.velocity_z_grid}
+    return name in names - {""}
+
+
+def _read(openvdb: ModuleType, grid: Any, name: str, messages: list[str]) -> VolumeGrid | None:
+    """The active part of a grid, with a border of one voxel; None where it has none, or no numbers."""
+    value = grid.background
+    channels = len(value) if isinstance(value, tuple | list) else 1
+    if isinstance(value, str) or channels not in (1, 3) or "Mask" in type(grid).__name__:
+        messages.append(f'its grid "{name}" holds no numbers and is left out')
+        return None
+    if grid.activeVoxelCount() == 0:
+        return None
+    low, high = (np.array(corner) for corner in grid.evalActiveVoxelBoundingBox())
+    counts = high - low + 1
+    if np.prod(counts, dtype=np.float64) > (1 << 31):
+        messages.append(f'its grid "{name}" has {" x ".join(map(str, counts))} voxels, too many to be read')
+        return None
+    values = np.zeros((*counts, channels) if channels > 1 else counts, np.float32)
+    grid.copyToArray(values, ijk=tuple(map(int, low)))
+    matrix = _index_to_object(grid.transform)
+    matrix[:3, 3] += matrix[:3, :3] @ low
+    values, step = _coarser(values.reshape(*counts, channels))
+    if step > 1:
+        messages.append(f'its grid "{name}" has more than {MAX_VOXELS:,} voxels; {step**3} are rendered as one')
+    matrix[:3, 3] += matrix[:3, :3] @ np.full(3, 0.5 * (step - 1))
+    matrix[:3, :3] *= step
+    matrix[:3, 3] -= matrix[:3, :3] @ np.ones(3)
+    return VolumeGrid(np.pad(values, [(1, 1)] * 3 + [(0, 0)]), matrix)
+
+
+def _index_to_object(transform: Any) -> np.ndarray:
+    """(4, 4) matrix of a linear transform."""
+    origin = np.array(transform.indexToWorld((0, 0, 0)))
+    matrix = np.eye(4)
+    for axis in range(3):
+        matrix[:3, axis] = np.array(transform.indexToWorld(tuple(float(axis == k) for k in range(3)))) - origin
+    matrix[:3, 3] = origin
+    return matrix
+
+
+def _coarser(values: np.ndarray) -> tuple[np.ndarray, int]:
+    """Values (x, y, z, channels) of at most MAX_VOXELS voxels, and how many voxels became one along each axis."""
+    step = 1
+    while np.prod([-(-count // step) for count in values.shape[:3]]) > MAX_VOXELS:
+        step += 1
+    if step == 1:
+        return values, 1
+    padded = np.pad(values, [(0, -count % step) for count in values.shape[:3]] + [(0, 0)])
+    x, y, z = (count // step for count in padded.shape[:3])
+    return padded.reshape(x, step, y, step, z, step, -1).mean(axis=(1, 3, 5), dtype=np.float32), step
