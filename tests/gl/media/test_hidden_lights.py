@@ -8,7 +8,18 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RayVisibility, Scene, World
+from rppm_addon.scene import (
+    Camera,
+    Instance,
+    Light,
+    LightKind,
+    LightLinking,
+    Material,
+    NodeGraph,
+    RayVisibility,
+    Scene,
+    World,
+)
 from rppm_addon.scene.settings import DirectLight, RenderSettings
 
 HIDDEN = RayVisibility.ALL & ~RayVisibility.VOLUME_SCATTER
@@ -79,3 +90,13 @@ def test_light_that_a_surface_has_reflected_is_scattered(renderer):
     assert reflected.mean() > 0.0
     scene.lights[0] = dataclasses.replace(scene.lights[0], visibility=RayVisibility.ALL)
     assert _shine(renderer, scene).mean() > 1.5 * reflected.mean()
+
+
+def test_light_linking_of_volumes_is_warned_of(renderer):
+    scene = _scene(DirectLight.RAYS, lights=[_lamp(RayVisibility.ALL)])
+    renderer.render(scene)
+    assert not scene.warnings
+    scene = _scene(DirectLight.RAYS, lights=[_lamp(RayVisibility.ALL)])
+    scene.instances[0] = dataclasses.replace(scene.instances[0], object_name="fog", linking=LightLinking(1))
+    renderer.render(scene)
+    assert "Light Linking of volumes (fog)" in scene.warnings[0]

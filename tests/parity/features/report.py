@@ -59,6 +59,14 @@ VOLUMES = (
     ("Light of a volume that more than one diffuse surface scatters", "left out"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
     ("Volume objects, and smoke and fire of fluid domains", "left out; the mesh of the domain is not shown either"),
+    (
+        "Light Linking of what has a volume that scatters",
+        "lights shine on the volume as on objects without Light Linking",
+    ),
+    (
+        "Volume Scatter, in the Ray Visibility of what neither emits light nor is the world",
+        "volumes see it as other surfaces do",
+    ),
 )
 """Uses of volumes that exports name as they come upon them, and what becomes of them."""
 
