@@ -4,7 +4,6 @@
 from collections.abc import Iterator
 
 from .camera_paths.gbuffer import jittered_view
-from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
