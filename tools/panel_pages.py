@@ -16,7 +16,9 @@ from types import SimpleNamespace
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "panels"
 BEGIN, END = "<!-- begin: tools/panel_pages.py -->", "<!-- end -->"
-TABS = {"view_layer": "View Layer", "object": "Object", "material": "Material", "world": "World"}
+TABS = {
+    "view_layer": "View Layer", "object": "Object", "modifier": "Modifier", "material": "Material", "world": "World",
+}  # fmt: skip
 """Tabs of the Properties editor whose panels share a page; those of the render tab have a page each."""
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "blender")]
 
@@ -183,6 +185,7 @@ def _contexts() -> Iterator[SimpleNamespace]:
     mesh = bpy.data.objects.new("Mesh", bpy.data.meshes.new("Mesh"))
     scene.collection.objects.link(mesh)
     mesh.data.materials.append(material)
+    mesh.modifiers.new("Subdivision", "SUBSURF")
     yield context_of(scene, object=mesh, material=material, world=scene.world, mesh=mesh.data)
     for kind in ("POINT", "SPOT", "SUN", "AREA"):
         data = bpy.data.lights.new(kind.title(), kind)

@@ -4,7 +4,7 @@
 import sys
 
 from ..wheel_libraries import add_wheel_libraries
-from . import background, operators, panels, preferences, properties, reports, self_test
+from . import background, operators, panels, preferences, properties, reports, self_test, user_folder
 from .engine import broken_frames, frame_reuse, preparing, render_engine
 from .export.images import kept_images
 from .render_client import renderer_process, renderer_thread
@@ -13,6 +13,7 @@ from .render_client import renderer_process, renderer_thread
 def register() -> None:
     """Add the properties, the engine, the operators, the panels and the preferences to Blender."""
     add_wheel_libraries(sys.path)
+    user_folder.register()
     background.register()
     properties.register()
     render_engine.register()
@@ -40,5 +41,7 @@ def unregister() -> None:
     operators.unregister()
     render_engine.unregister()
     properties.unregister()
+    background.unregister()
+    user_folder.unregister()
     reports.forget()
     renderer_thread.release()

@@ -2,22 +2,19 @@
 """Blender without a window, as farm managers run it: options behind ``--``, and an exit status for lost frames."""
 
 import argparse
-import atexit
-import contextlib
-import ctypes
+import itertools
 import logging
 import os
-import shutil
+import signal
 import sys
 from collections.abc import Sequence
 
 import bpy
+from bpy.app.handlers import persistent
+
+from .app_handlers import add_handlers, remove_handlers
 
 logger = logging.getLogger(__name__)
-
-FAILED = 1
-"""Exit status of a Blender that has lost a frame, unless --python-exit-code says another."""
-_lost_frames = False
 
 
 def read_options(arguments: Sequence[str]) -> None:
@@ -37,36 +34,77 @@ def read_options(arguments: Sequence[str]) -> None:
         os.environ["RPPM_DEVICE"] = options.rppm_device
 
 
+def renders_asked(arguments: Sequence[str]) -> int:
+    """Return the number of renders that Blender's command line asks for: one for -a, one for each frame of -f."""
+    arguments = list(arguments)
+    if "--" in arguments:
+        arguments = arguments[: arguments.index("--")]
+    animations = sum(argument in {"-a", "--render-anim"} for argument in arguments)
+    lists = (value for name, value in itertools.pairwise(arguments) if name in {"-f", "--render-frame"})
+    return animations + sum(_frame_count(part) for value in lists for part in value.split(","))
+
+
+def _frame_count(part: str) -> int:
+    """Return the number of frames of a part of -f: a frame, or the first and last of some, ``3..4``."""
+    first, _, last = part.partition("..")
+    try:
+        return max(int(last) - int(first) + 1, 1)
+    except ValueError:
+        return 1
+
+
+class RenderCount:
+    """Counts the renders of Blender's command line, to find the last one."""
+
+    def __init__(self, asked: int) -> None:
+        """asked: number of renders on the command line; 0 where a script renders."""
+        self._left = asked
+        self._has_lost_frames = False
+
+    def lose_frame(self) -> None:
+        """Note that a frame has no picture."""
+        self._has_lost_frames = True
+
+    def end_render(self) -> bool:
+        """Count a render that is complete or cancelled. Returns True once: when no more is left and frames are lost."""
+        self._left -= 1
+        if self._left > 0 or not self._has_lost_frames:
+            return False
+        self._has_lost_frames = False
+        return True
+
+
+_count = RenderCount(renders_asked(sys.argv))
+
+
 def lose_frame() -> None:
     """A frame has no picture: a Blender in the background will end with another status than 0."""
-    global _lost_frames
-    _lost_frames = True
+    _count.lose_frame()
 
 
-def failure_status(arguments: Sequence[str]) -> int:
-    """The exit status for lost frames by Blender's command line."""
-    with contextlib.suppress(ValueError, IndexError):
-        return int(arguments[list(arguments).index("--python-exit-code") + 1]) or FAILED
-    return FAILED
+@persistent
+def _on_end(*_: object) -> None:
+    """A render is complete or cancelled. Where it was the last one, lost frames break it off, as Ctrl-C would.
 
-
-def _end() -> None:
-    """Blender knows no way to end otherwise than well once an animation is rendered. All files are written by now."""
+    Blender's exit status is then 1. Broken off earlier, the renders that are left would be cancelled.
+    """
     # As a module Blender is a guest in another program, whose status is its own.
-    if not (_lost_frames and bpy.app.background and bpy.app.binary_path):
+    if not (_count.end_render() and bpy.app.background and bpy.app.binary_path):
         return
-    shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
-    sys.stdout.flush()
-    sys.stderr.flush()
-    # What Blender itself has printed.
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None).fflush(None)
-    os._exit(failure_status(sys.argv))
+    logger.warning("frames have no picture: Blender ends with status 1")
+    if signal.getsignal(signal.SIGINT) is None:  # Blender's own handler, which ends Blender at the second signal
+        signal.raise_signal(signal.SIGINT)
 
 
-atexit.register(_end)  # the first one registered is the last one called
+_HANDLERS = ((bpy.app.handlers.render_complete, _on_end), (bpy.app.handlers.render_cancel, _on_end))
 
 
 def register() -> None:
-    """Take the options that Blender was started with."""
+    """Take the options that Blender was started with, and follow its renders."""
     read_options(sys.argv)
+    add_handlers(_HANDLERS)
+
+
+def unregister() -> None:
+    """Follow renders no longer."""
+    remove_handlers(_HANDLERS)

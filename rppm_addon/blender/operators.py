@@ -4,6 +4,7 @@
 import contextlib
 
 import bpy
+from bpy.app.translations import pgettext_rpt as rpt_
 from bpy.props import EnumProperty, StringProperty
 
 from ..session.client.client import ProcessState
@@ -80,7 +81,8 @@ class RPPM_OT_open_log(bpy.types.Operator):
         """Called by Blender."""
         path = renderer_process.renderer_process().log_path
         if not path.is_file():
-            self.report({"WARNING"}, f"There is no log yet: {path} is written once the renderer has started")
+            template = rpt_("There is no log yet: {} is written once the renderer has started")
+            self.report({"WARNING"}, template.format(path))
             return {"CANCELLED"}
         bpy.ops.wm.path_open(filepath=str(path))
         return {"FINISHED"}
@@ -104,13 +106,16 @@ class RPPM_OT_convert_to_dispersion(bpy.types.Operator):
         material = context.material
         found = colored_glasses.colored_glasses(material)
         if found is None:
-            self.report({"WARNING"}, f'"{material.name}" has no red, green and blue glass that are added')
+            template = rpt_('"{}" has no red, green and blue glass that are added')
+            self.report({"WARNING"}, template.format(material.name))
             return {"CANCELLED"}
         ior, abbe_number = found.fitted
         colored_glasses.convert(material, found)
-        text = f'"{material.name}": one glass, IOR {ior:.3f}, Abbe Number {material.rppm.abbe_number:.1f}'
+        template = rpt_('"{}": one glass, IOR {:.3f}, Abbe Number {:.1f}')
+        text = template.format(material.name, ior, material.rppm.abbe_number)
         if abbe_number < 0.0:
-            self.report({"WARNING"}, f"{text}; red had the largest index, which no glass has: blue has it now")
+            template = rpt_("{}; red had the largest index, which no glass has: blue has it now")
+            self.report({"WARNING"}, template.format(text))
         else:
             self.report({"INFO"}, text)
         return {"FINISHED"}

@@ -6,6 +6,8 @@ import sys
 from typing import TYPE_CHECKING
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
+from bpy.app.translations import pgettext_tip as tip_
 
 from ..denoising.places import REMEDY
 from ..scene.common.quantities import bytes_text
@@ -48,10 +50,11 @@ def _device_items(owner: bpy.types.AddonPreferences, _context: bpy.types.Context
         labels.setdefault(found.identity, found.label)  # a card that two drivers list is one
     chosen = device_here(owner.devices)
     if chosen is not None:
-        labels.setdefault(chosen.identity, f"{chosen.name}, {'not looked for yet' if device is None else 'not there'}")
-    automatic = "A graphics card; where there is none what the processor has, and at last the processor itself"
+        template = iface_("{}, not looked for yet") if device is None else iface_("{}, not there")
+        labels.setdefault(chosen.identity, template.format(chosen.name))
+    automatic = tip_("A graphics card; where there is none what the processor has, and at last the processor itself")
     _items[:] = [
-        (_AUTOMATIC, "Automatic", automatic, 0),
+        (_AUTOMATIC, iface_("Automatic"), automatic, 0),
         *((identity, label, identity, number) for number, (identity, label) in enumerate(labels.items(), 1)),
     ]
     return _items
@@ -77,13 +80,12 @@ def missing() -> list[str]:
     """List what keeps RPPM from rendering here, a line each with the remedy."""
     problems = []
     if sys.platform == "darwin":
-        problems.append("macOS stops at OpenGL 4.1 and RPPM needs 4.3: use Linux or Windows")
+        problems.append(iface_("macOS stops at OpenGL 4.1 and RPPM needs 4.3: use Linux or Windows"))
     # Looked for without importing them: Windows cannot replace what Blender has loaded.
     modules = [name for name in _MODULES if importlib.util.find_spec(name) is None]
     if modules:
-        problems.append(
-            f"Python does not find {', '.join(modules)}: install the extension's zip for this platform again"
-        )
+        template = iface_("Python does not find {}: install the extension's zip for this platform again")
+        problems.append(template.format(", ".join(modules)))
     return problems
 
 
@@ -131,8 +133,8 @@ class RppmPreferences(bpy.types.AddonPreferences):
         if device is not None:
             self._draw_device(device, context)
         if device_of_environment():
-            text = f"{device_of_environment()}, by the environment variable RPPM_DEVICE or --rppm-device"
-            reading(layout, "Chosen Device", text)
+            template = iface_("{}, by the environment variable RPPM_DEVICE or --rppm-device")
+            reading(layout, "Chosen Device", template.format(device_of_environment()))
         elif sys.platform.startswith("linux"):
             split = layout.split(factor=0.4)
             left = split.row()
@@ -141,7 +143,7 @@ class RppmPreferences(bpy.types.AddonPreferences):
             split.prop(self, "device", text="")
         self._draw_denoiser(context)
         row = layout.row()
-        row.label(text=f"Log: {process.log_path}")
+        row.label(text=iface_("Log: {}").format(process.log_path), translate=False)
         row.operator("rppm.open_log", text="Open", icon="TEXT")
         self_test.draw(layout)
 
@@ -150,9 +152,10 @@ class RppmPreferences(bpy.types.AddonPreferences):
         libraries = denoising_libraries()
         if libraries:
             used = libraries[0]
-            reading(column, "Open Image Denoise", f"of {used.source.value}: {used.path}")
+            reading(column, "Open Image Denoise", iface_("of {}: {}").format(used.source.value, used.path))
         else:
-            paragraph(column, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="INFO")
+            text = iface_("Open Image Denoise is not there: {}").format(iface_(REMEDY))
+            paragraph(column, text, letters_across(context), icon="INFO")
         column.prop(self, "denoiser_path", text="Denoiser")
 
     def _draw_device(self, device: "DeviceInformation", context: bpy.types.Context) -> None:

@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
+from bpy.app.translations import pgettext_rpt as rpt_
 
 from .. import self_test
 from . import panels
@@ -61,7 +63,7 @@ class RPPM_OT_self_test(bpy.types.Operator):
                     env={**os.environ, **renderer_process.environment()},
                 )
         except OSError as error:
-            self.report({"ERROR"}, f"The self-test cannot be started: {error}")
+            self.report({"ERROR"}, rpt_("The self-test cannot be started: {}").format(error))
             return {"CANCELLED"}
         bpy.app.timers.register(_show_end, first_interval=_ASKED_EVERY)
         return {"FINISHED"}
@@ -89,9 +91,11 @@ def draw(layout: bpy.types.UILayout) -> None:
         row.label(text="The self-test runs for a minute or two")
     elif _running is not None and not report_path().is_file():
         log = report_path().with_suffix(".log")
-        row.label(text=f"The self-test ended with code {_running.returncode}, without a report: {log}", icon="ERROR")
+        text = iface_("The self-test ended with code {}, without a report: {}").format(_running.returncode, log)
+        row.label(text=text, icon="ERROR", translate=False)
     elif _running is not None:
-        row.label(text=f"Report: {report_path()}", icon="NONE" if _running.returncode == 0 else "ERROR")
+        icon = "NONE" if _running.returncode == 0 else "ERROR"
+        row.label(text=iface_("Report: {}").format(report_path()), icon=icon, translate=False)
     else:
         row.label(text="Try the device, for a bug report")
     row.operator("rppm.self_test", icon="CHECKMARK")

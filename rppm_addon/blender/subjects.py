@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Subjects that warnings are about, and how they are selected."""
+"""Subjects that warnings are about, selected in Blender."""
 
 import enum
-import re
-from collections.abc import Iterable
-from dataclasses import dataclass, field
 
 import bpy
 
@@ -15,41 +12,6 @@ class SubjectKind(enum.Enum):
     OBJECT = 0
     MATERIAL = 1
     WORLD = 2
-
-
-_KINDS = {
-    "Object": SubjectKind.OBJECT,
-    "Light": SubjectKind.OBJECT,
-    "Camera": SubjectKind.OBJECT,
-    "Material": SubjectKind.MATERIAL,
-    "World": SubjectKind.WORLD,
-}
-_START = re.compile(rf'({"|".join(_KINDS)}) "(.+?)": (?:node "(.+?)" \([A-Z_0-9]+\) )?')
-
-
-@dataclass
-class Subject:
-    """One thing that warnings name, and what they say about it."""
-
-    kind: SubjectKind | None
-    """None where a warning names nothing that can be selected."""
-    name: str
-    texts: list[str] = field(default_factory=list)
-    node: str = ""
-    """The first node of a material or world that is named."""
-
-
-def subjects(warnings: Iterable[str]) -> list[Subject]:
-    """Warnings by what they are about, in the order in which it is first named."""
-    found: dict[tuple[SubjectKind | None, str], Subject] = {}
-    for warning in warnings:
-        match = _START.match(warning)
-        kind, name = (_KINDS[match[1]], match[2]) if match else (None, "")
-        subject = found.setdefault((kind, name), Subject(kind, name))
-        subject.texts.append(warning[match.end(2) + 3 :] if match else warning)
-        if match and match[3] and not subject.node:
-            subject.node = match[3]
-    return list(found.values())
 
 
 def select(context: bpy.types.Context, kind: SubjectKind, name: str, node: str = "") -> str:

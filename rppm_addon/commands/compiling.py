@@ -30,7 +30,7 @@ def compile_programs(options: argparse.Namespace, bar: ProgressBar) -> int:
     with Renderer() as renderer:
         count = renderer.compile(
             scene,
-            lambda number, known, name: bar.show((number - 1) / known, f"Compiling {number} of {known}: {name}"),
+            lambda fraction, name: bar.show(fraction, f"Compiling: {name}"),
         )
         device = renderer.device.label
     bar.clear()

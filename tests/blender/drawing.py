@@ -19,6 +19,10 @@ class RecordingLayout:
 
     row = column = box = split = grid_flow = _part
 
+    def panel(self, _identifier, default_closed=False):
+        """A header and a body, as if it were open."""
+        return self._part(), self._part()
+
     def separator(self, **_):
         pass
 
@@ -34,7 +38,7 @@ class RecordingLayout:
     def menu(self, menu, text="", icon="NONE"):
         assert hasattr(bpy.types, menu) and icon in ICONS
 
-    def label(self, text="", icon="NONE"):
+    def label(self, text="", icon="NONE", translate=True):
         assert isinstance(text, str) and icon in ICONS
         self.record.labels.append(text)
 

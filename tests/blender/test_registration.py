@@ -13,7 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def panels_of_blender():
-    return [panel for panel in bpy.types.Panel.__subclasses__() if hasattr(panel, "COMPAT_ENGINES")]
+    panels = [panel for panel in bpy.types.Panel.__subclasses__() if hasattr(panel, "COMPAT_ENGINES")]
+    return [panel for panel in panels if "rppm_addon" not in panel.__module__]
 
 
 def test_unregister_leaves_nothing(scene):

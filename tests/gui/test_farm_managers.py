@@ -33,9 +33,10 @@ def test_frames_without_a_picture_fail_the_job(machine):
     assert not list(machine.folder.glob("farm_*"))
 
 
-def test_frames_without_a_picture_end_with_a_status_of_their_own(machine):
+@pytest.mark.parametrize("frames", ["-s 2 -e 4 -a", "-f 2,3..4"])
+def test_frames_without_a_picture_end_with_a_status_of_their_own(machine, frames):
     """The others are rendered, and what was printed is not lost."""
-    command = "blender --background --offline-mode /mnt/broken.blend -o /mnt/farm_#### -F PNG -s 2 -e 4 -a"
+    command = f"blender --background --offline-mode /mnt/broken.blend -o /mnt/farm_#### -F PNG {frames}"
     output = machine.run(["sh", "-c", f"{command}; echo ended with $?"], USER_FOLDER, 120.0)
     assert "ended with 1" in output and "Saved: '/mnt/farm_0004.png'" in output and "Frame 3 has no picture" in output
     assert sorted(path.name for path in machine.folder.glob("farm_*")) == ["farm_0002.png", "farm_0004.png"]

@@ -59,7 +59,7 @@ def test_preferences_show_the_device(open_blender):
 
 
 def test_the_viewport_reports_and_pauses(open_blender):
-    """The panels learn of its iterations and lights; paused, it does no more of them."""
+    """The panels learn of its iterations and lights; paused, it does no more of them until it is Rendered anew."""
     blender = open_blender("small.blend", 1280, 900)
     blender.step("assign", path="scene.rppm.preview_samples", value=100000)
     blender.shrink("VIEW_3D", 300, 200)
@@ -76,6 +76,10 @@ def test_the_viewport_reports_and_pauses(open_blender):
     blender.screenshot("paused")
     blender.step("assign", path="scene.rppm.preview_pause", value=False)
     blender.wait_until("readings", 60.0, lambda found: found["iterations"] > before)
+    blender.step("shading", kind="SOLID")
+    blender.step("assign", path="scene.rppm.preview_pause", value=True)
+    blender.step("shading", kind="RENDERED")
+    blender.wait_until("evaluate", 60.0, lambda paused: not paused, text="scene.rppm.preview_pause")
     blender.quit()
 
 

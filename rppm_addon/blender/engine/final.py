@@ -25,6 +25,7 @@ from ..export import ExportStopped, Eye, FrameExporter, export_scene, is_blurred
 from ..export.camera.camera import frame_size
 from ..render_client import renderer_process, renderer_thread
 from ..reports import final_report, record, record_error
+from ..warning_groups import lines_of
 from . import broken_frames
 from .frame_reuse import reuse_previous_frame
 
@@ -40,7 +41,7 @@ PICTURE_SHARE = 0.2
 """Most of the time that showing pictures may take."""
 MEGABYTE = 1 << 20
 WARNINGS_SHOWN = 8
-"""Warnings reported one by one; the log has them all."""
+"""Lines of warnings that are reported; the log has all warnings."""
 
 
 def render_final(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
@@ -187,10 +188,11 @@ def _fail(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, observ
 
 
 def report_warnings(engine: bpy.types.RenderEngine, warnings: list[str]) -> None:
-    """Show the user the first of them."""
-    for warning in warnings[:WARNINGS_SHOWN]:
-        engine.report({"WARNING"}, warning)
-    more = len(warnings) - WARNINGS_SHOWN
+    """Show the user the first of them, those that say the same of several things in one line."""
+    lines = lines_of(warnings)
+    for line in lines[:WARNINGS_SHOWN]:
+        engine.report({"WARNING"}, line)
+    more = len(lines) - WARNINGS_SHOWN
     if more > 0:
         engine.report({"WARNING"}, f"{more} more warnings of this kind are in the log")
 

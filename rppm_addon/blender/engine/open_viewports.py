@@ -22,11 +22,16 @@ def of_engine(engine: bpy.types.RenderEngine) -> Viewport:
     if not bpy.app.timers.is_registered(_poll):
         bpy.app.timers.register(_poll, first_interval=POLL_SECONDS)
     key = engine.as_pointer()
-    if key in _viewports and _viewports[key].engine is not engine:
-        close(key)  # freed, and another one lies where it was
-    if key not in _viewports:
+    if not is_open(engine):
+        close(key)  # one of a freed engine that lay where this one lies
         _viewports[key] = Viewport(engine)
     return _viewports[key]
+
+
+def is_open(engine: bpy.types.RenderEngine) -> bool:
+    """Whether there is a viewport that an engine draws."""
+    viewport = _viewports.get(engine.as_pointer())
+    return viewport is not None and viewport.engine is engine
 
 
 def close(key: int) -> None:

@@ -51,7 +51,9 @@ class RppmRenderEngine(bpy.types.RenderEngine):
         bake(self, depsgraph, obj, pass_type, pass_filter, width, height)
 
     def view_update(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
-        """Something in the scene has changed."""
+        """Something in the scene has changed. A viewport that is switched to Rendered lifts Pause, as in Cycles."""
+        if context.scene.rppm.preview_pause and not open_viewports.is_open(self):
+            context.scene.rppm.preview_pause = False
         open_viewports.of_engine(self).update(context, depsgraph)
 
     def view_draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:

@@ -7,10 +7,8 @@ import bpy
 
 from ...scene import Scene
 from ..export import ExportProgress, SceneSync, export_view
+from ..export.common.slices import SlicePacing
 from . import kept_exports
-
-SLICE_SECONDS = 0.03
-"""Length of each slice of an export, in seconds."""
 
 
 class ViewportExport:
@@ -18,6 +16,7 @@ class ViewportExport:
 
     def __init__(self) -> None:
         self._sync = SceneSync()
+        self._pacing = SlicePacing()
         self._depsgraph_key: tuple | None = None
         """Key of the exported depsgraph (kept_exports.key_of); None before the first export."""
         self._visibility: tuple = ()
@@ -47,8 +46,13 @@ class ViewportExport:
         if visibility != self._visibility:
             self._visibility = visibility
             self._sync.relist()
-        seconds = math.inf if is_playing(context) and self._sync.scene is not None else SLICE_SECONDS
-        self.progress = self._sync.advance(depsgraph, camera, shown, seconds)
+        seconds = self._pacing.begin()
+        if is_playing(context) and self._sync.scene is not None:
+            seconds = math.inf
+        try:
+            self.progress = self._sync.advance(depsgraph, camera, shown, seconds)
+        finally:
+            self._pacing.end(is_last=self.progress is None)
         return self.progress is None
 
     def _reuse_kept(self, depsgraph: bpy.types.Depsgraph) -> None:

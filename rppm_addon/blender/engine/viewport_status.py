@@ -4,6 +4,7 @@
 import time
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ...scene import Scene
 from ...scene.common.quantities import noise_text, rate_text
@@ -44,13 +45,14 @@ class ViewportStatus:
         is_starting = process.state is ProcessState.STARTING
         error = export_error or ("" if is_starting else failure() or status.error)
         if process.state is ProcessState.FAILED:
-            text = "The renderer has stopped: Restart is in the header"
+            text = iface_("The renderer has stopped: Restart is in the header")
         elif error:
             text = error
         elif export is not None:
-            text = f"Exporting {export.objects} of {export.of}" if export.of else "Exporting"
+            share = iface_("Exporting: {:.0%}").format(export.objects / export.of) if export.of else ""
+            text = share or iface_("Exporting")
         elif is_starting:
-            text = "Starting the renderer"
+            text = iface_("Starting the renderer")
         else:
             radius = length_text(context.scene, status.photon_statistics.radius_meters)
             text = status_text(status, context.scene.rppm.preview_pause, radius, letters_across(context))
@@ -82,18 +84,20 @@ def status_text(status: SessionStatus, is_paused: bool, radius: str, letters: in
         letters: number of letters that fit; the line has fewer parts where it would be longer.
     """
     progress, compilation = status.progress, status.compilation
-    if progress is None and compilation.started:
-        return f"Compiling {compilation.started} of {compilation.needed}: {compilation.program}"
+    if progress is None and compilation.fraction is not None:
+        return iface_("Compiling shaders: {:.0%}").format(compilation.fraction)
     if progress is None:
-        return "Compiling shaders and building the scene"
+        return iface_("Compiling shaders and building the scene")
     if is_paused or status.settled:
-        state = "Paused" if is_paused else "Finished"
+        state = iface_("Paused") if is_paused else iface_("Finished")
     else:
-        state = f"{rate_text(progress.photons_per_second)} photons/s"
-    noise = [f"Noise {noise_text(progress.noise, progress.noise_threshold)}"] if progress.noise > 0.0 else []
-    parts = [f"Sample {progress.iteration}/{progress.iterations}", state, *noise, f"Radius {radius}"]
+        state = iface_("{} photons/s").format(rate_text(progress.photons_per_second))
+    parts = [iface_("Sample {}/{}").format(progress.iteration, progress.iterations), state]
+    if progress.noise > 0.0:
+        parts.append(iface_("Noise {}").format(noise_text(progress.noise, progress.noise_threshold)))
+    parts.append(iface_("Radius {}").format(radius))
     if compilation.stood_in_for:
-        parts.insert(1, f"Materials to compile: {compilation.stood_in_for}")
+        parts.insert(1, iface_("Materials to compile: {}").format(compilation.stood_in_for))
     while len(parts) > 1 and len(" | ".join(parts)) > letters:
         parts.pop()
     return " | ".join(parts)

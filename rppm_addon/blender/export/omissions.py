@@ -150,7 +150,7 @@ class OmissionList:
             if switched_off:
                 report.warn(
                     f"Passes that are on for Cycles only: {', '.join(switched_off)}; switch them on in View Layer > "
-                    "Passes, or take all of Cycles' settings with Sampling > Copy from Cycles"
+                    "Passes, or take all of Cycles' settings with Sampling > Advanced > Copy from Cycles"
                 )
 
 

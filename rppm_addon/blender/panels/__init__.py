@@ -15,15 +15,17 @@ from .render_tab import (
     render,
     sampling,
     simplify,
+    subdivision,
 )
 
 CLASSES = (
     *cycles_settings.CLASSES,
     *presets.CLASSES,
-    *warnings.CLASSES,
     *sampling.CLASSES,
+    *warnings.CLASSES,
     *performance.STATUS,
     *render.CLASSES,
+    *subdivision.CLASSES,
     *curves.CLASSES,
     *motion.CLASSES,
     *baking.CLASSES,

@@ -3,6 +3,7 @@
 
 import bpy
 
+from . import cycles_properties
 from .base import RppmPanel
 from .nodes import RppmNodePanel
 
@@ -53,6 +54,8 @@ class RPPM_PT_light(RppmLightPanel, bpy.types.Panel):
         if cycles is not None:
             column.prop(cycles, "max_bounces")
         column.prop(light.rppm, "photon_weight")
+        if cycles is None:
+            cycles_properties.draw_remedy(column, "Portal, Max Bounces" if light.type == "AREA" else "Max Bounces")
 
 
 class RPPM_PT_light_beam(RppmLightPanel, bpy.types.Panel):
@@ -92,7 +95,7 @@ class RPPM_PT_panorama(RppmPanel, bpy.types.Panel):
         # Before Blender 5 Cycles adds the properties.
         source = camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)
         if source is None:
-            self.layout.label(text="Enable the add-on Cycles Render Engine", icon="INFO")
+            cycles_properties.draw_remedy(self.layout, "Panorama Type")
             return
         column = self.column()
         column.prop(source, "panorama_type")

@@ -2,9 +2,11 @@
 """Panels of the tabs of a material and of the world."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ..colored_glasses import colored_glasses
 from ..export.instances.instance_reader import SURFACE_TYPES
+from . import cycles_properties
 from .base import RppmPanel, letters_across, paragraph
 from .nodes import RppmNodePanel
 
@@ -56,7 +58,7 @@ class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
         row.active = material.rppm.use_dispersion
         row.prop(material.rppm, "abbe_number")
         if colored_glasses(material) is not None:
-            paragraph(column, _COLORED_GLASSES, letters_across(context), icon="INFO")
+            paragraph(column, iface_(_COLORED_GLASSES), letters_across(context), icon="INFO")
             column.operator("rppm.convert_to_dispersion")
 
 
@@ -108,13 +110,18 @@ class RPPM_PT_shadow_terminator(RppmPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         thing = context.object
-        is_there = thing is not None and thing.type in SURFACE_TYPES
-        return super().poll(context) and is_there and hasattr(thing, "shadow_terminator_shading_offset")
+        return super().poll(context) and thing is not None and thing.type in SURFACE_TYPES
 
     def draw(self, context: bpy.types.Context) -> None:
-        column = self.column()
-        column.prop(context.object, "shadow_terminator_geometry_offset", text="Geometry Offset")
-        column.prop(context.object, "shadow_terminator_shading_offset", text="Shading Offset")
+        thing, column = context.object, self.column()
+        if hasattr(thing, "shadow_terminator_shading_offset"):
+            column.prop(thing, "shadow_terminator_geometry_offset", text="Geometry Offset")
+            column.prop(thing, "shadow_terminator_shading_offset", text="Shading Offset")
+        elif cycles_properties.are_there():  # whose properties they are before Blender 5
+            column.prop(thing.cycles, "shadow_terminator_geometry_offset", text="Geometry Offset")
+            column.prop(thing.cycles, "shadow_terminator_offset", text="Shading Offset")
+        else:
+            cycles_properties.draw_remedy(column, "Geometry Offset, Shading Offset")
 
 
 class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
@@ -124,12 +131,13 @@ class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return super().poll(context) and hasattr(
-            context.world, "cycles_visibility"
-        )  # None has none, nor without Cycles
+        return super().poll(context) and context.world is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(column, "Ray Visibility, Max Bounces")
+            return
         for name in ("camera", "diffuse", "glossy", "transmission", "scatter"):
             column.prop(context.world.cycles_visibility, name)
         column.separator()

@@ -2,6 +2,7 @@
 """Settings for which 0 is automatic or no limit: a switch says so in words, and shows the value where there is one."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ...scene import RenderSettings
 from ...scene.settings.setting_info import settings_of
@@ -55,7 +56,7 @@ def draw_setting(column: bpy.types.UILayout, scene: bpy.types.Scene, name: str, 
     if getattr(scene.rppm, name) != 0:
         row.prop(scene.rppm, name, text="")
     else:
-        row.label(text=unset or MEANINGS[name])
+        row.label(text=unset or iface_(MEANINGS[name]), translate=False)
 
 
 def register() -> None:

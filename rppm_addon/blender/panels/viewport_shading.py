@@ -3,17 +3,17 @@
 
 import bpy
 
-from .base import ENGINE
+from .base import EnginePanel
 
 
-class _ShadingPanel:
+class _ShadingPanel(EnginePanel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "HEADER"
     bl_parent_id = "VIEW3D_PT_shading"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return context.engine == ENGINE and context.space_data.shading.type == "RENDERED"
+        return super().poll(context) and context.space_data.shading.type == "RENDERED"
 
 
 class RPPM_PT_shading_lighting(_ShadingPanel, bpy.types.Panel):

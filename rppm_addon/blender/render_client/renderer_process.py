@@ -15,10 +15,10 @@ from ...session.client.client import ProcessState, RendererProcess
 from ...session.render.render_job import RenderJob
 from ...session.render.results import RenderResult
 from ...session.transport.sessions import SessionKind
+from ..user_folder import user_folder
 from .chosen_device import VARIABLE, chosen_device
 from .denoising_libraries import denoising_libraries
 
-_EXTENSIONS = "bl_ext"
 _process: RendererProcess | None = None
 _final: remote_rendering.RemoteRenderer | None = None
 """Renderer that all final renders share; None before the first one."""
@@ -105,12 +105,7 @@ def python_program() -> str:
 
 def log_path() -> Path:
     """The file that the process logs to."""
-    package = __package__.split(".")
-    if package[0] == _EXTENSIONS:
-        folder = bpy.utils.extension_path_user(".".join(package[:3]))
-    else:
-        folder = bpy.utils.user_resource("DATAFILES", path="rppm")
-    return Path(folder) / "renderer.log"
+    return user_folder() / "renderer.log"
 
 
 @persistent

@@ -16,6 +16,8 @@ from ..context.context import Context
 
 log = logging.getLogger(__name__)
 
+VARIABLE = "RPPM_CACHE"
+"""The environment variable that names the folder of binaries."""
 _PROGRAM_BINARY_LENGTH = 0x8741
 _LINK_STATUS = 0x8B82
 _DIGEST_SIZE, _KIND_SIZE = 32, 4
@@ -24,9 +26,9 @@ _FORMAT = "digest, kind, binary\n"
 
 
 def cache_folder() -> Path:
-    """Where binaries are kept: RPPM_CACHE, or the platform's cache folder of the user, or a temporary one."""
-    if "RPPM_CACHE" in os.environ:
-        return Path(os.environ["RPPM_CACHE"])
+    """Where binaries are kept: VARIABLE, or the platform's cache folder of the user, or a temporary one."""
+    if VARIABLE in os.environ:
+        return Path(os.environ[VARIABLE])
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", tempfile.gettempdir())) / "rppm" / "programs"
     if os.environ.get("XDG_CACHE_HOME"):

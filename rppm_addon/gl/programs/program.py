@@ -49,6 +49,7 @@ class Program:
         self.before_dispatch: Callable[[], None] | None = None
         """Called once, when all is bound."""
         self.name = " + ".join(source.files[0] for source in sources)
+        self.sources = sources
         self._bindings: dict[str, int] = {}
         self._textures: dict[str, int] = {}
         self.record: Record | None = None

@@ -7,7 +7,7 @@ import logging
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
-from typing import Any
+from typing import Any, NamedTuple
 
 from ...scene.errors import DeviceError
 from ..context.context import Context
@@ -17,6 +17,14 @@ from .program_maker import ProgramMaker
 from .sources import Source, expand
 
 log = logging.getLogger(__name__)
+
+
+class CompilationWork(NamedTuple):
+    """Work of compiling programs, in letters of their texts, which the time to compile them follows."""
+
+    compiled: int
+    known: int
+    """Work of all programs made so far."""
 
 
 class ProgramLibrary:
@@ -98,6 +106,18 @@ class ProgramLibrary:
         if key not in self._sources:
             self._sources[key] = expand(path, {}, dict(inserts), self._reads_texels)
         return self._sources[key]
+
+    def compilation_work(self) -> CompilationWork:
+        """Return the work of the programs so far: compiled are those that have run, or were tried in the background."""
+        compiler, compiled, known = self._maker.compiler, 0, 0
+        for program in self._programs.values():
+            length = sum(len(source.text) for source in program.sources)
+            known += length
+            is_compiled = program.before_first_run is None or (
+                compiler is not None and all(map(compiler.has_tried, program.sources))
+            )
+            compiled += length if is_compiled else 0
+        return CompilationWork(compiled, known)
 
     @property
     def pacing(self) -> Pacing:

@@ -36,7 +36,7 @@ Record(
 StorageBlock("MediumPhotons", "uint medium_photon_count; uint medium_photons[];")
 """Numbers of the photons that media have scattered."""
 
-_EXPECTED_PHOTONS = 4
+_EXPECTED_PHOTONS = 8
 """Photons in the kernel of the first iteration, where they lie evenly in the media."""
 _WIDEST = 0.1
 """Largest radius over the radius of the scene."""

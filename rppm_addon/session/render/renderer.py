@@ -110,15 +110,22 @@ class Renderer:
         self._context = Context.create(self._device)
         self._library = ProgramLibrary(self._context)
 
-    def compile(self, scene: Scene, on_program: Callable[[int, int, str], None]) -> int:
+    def compile(self, scene: Scene, on_program: Callable[[float, str], None]) -> int:
         """Have the driver compile the programs that pictures of a scene need, and keep them on the disk.
 
         The scene is rendered, as drivers compile for the state in which programs run: make it small. ``on_program``
-        is called before each program that runs for the first time, with its number, the number of programs so far and
-        its name. Returns the number of programs. Raises the errors of scene/errors.py.
+        is called before each program that runs for the first time, with the fraction of the work that is done, 0 to 1,
+        and its name. Returns the number of programs. Raises the errors of scene/errors.py.
         """
-        library = self._library
-        library.on_start = lambda name: on_program(library.started, library.made, name)
+        library, done = self._library, 0.0
+
+        def tell(name: str) -> None:
+            nonlocal done
+            work = library.compilation_work()
+            done = max(done, work.compiled / work.known)
+            on_program(done, name)
+
+        library.on_start = tell
         try:
             self.render(scene)
         finally:

@@ -20,12 +20,8 @@ class SessionKind(enum.Enum):
 class CompilationProgress:
     """Progress of the programs of a viewport."""
 
-    program: str = ""
-    """Name of the last program whose compilation has begun."""
-    started: int = 0
-    """Programs that were compiled before the first iteration."""
-    needed: int = 0
-    """Programs that are known to be needed for the first iteration."""
+    fraction: float | None = None
+    """Fraction of the work before the first iteration that is done, 0 to 1; None before any is known."""
     stood_in_for: int = 0
     """Programs of materials that are compiled while stand-ins are rendered in their place."""
 

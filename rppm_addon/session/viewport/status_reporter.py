@@ -25,20 +25,24 @@ class StatusReporter:
         self._status = SessionStatus()
         """The last status."""
         self._compilation_reported_at = 0.0
+        self._work_before = library.compilation_work().compiled
+        """Work that others have done."""
+        self._compiled_fraction = 0.0
 
     def report(self, status: SessionStatus) -> None:
         """Send a status."""
         self._status = status
         self._send("status", status=dataclasses.asdict(status))
 
-    def report_compilation(self, program: str) -> None:
-        """Send how many programs are compiled, unless that was sent a moment ago; ``program`` is the next one."""
+    def report_compilation(self) -> None:
+        """Send how much is compiled, unless that was sent a moment ago. The fraction never falls."""
         now = time.perf_counter()
         if now - self._compilation_reported_at >= COMPILATION_SECONDS:
             self._compilation_reported_at = now
-            self.report(
-                SessionStatus(compilation=CompilationProgress(program, self._library.started, self._library.made))
-            )
+            work = self._library.compilation_work()
+            done, all_of_it = work.compiled - self._work_before, work.known - self._work_before
+            self._compiled_fraction = max(self._compiled_fraction, done / max(all_of_it, 1))
+            self.report(SessionStatus(compilation=CompilationProgress(self._compiled_fraction)))
 
     def report_error(self, error: Exception) -> None:
         """Send what is wrong with the scene; the session waits for another one."""

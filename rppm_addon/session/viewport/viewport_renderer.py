@@ -181,11 +181,11 @@ class ViewportRenderer:
         if self._presenter.can_reproject(request.generation):
             self._presenter.reproject(self._stand_ins.as_shown(request.scene), request.generation)
 
-    def _while_compiling(self, program: str) -> None:
+    def _while_compiling(self, _program: str) -> None:
         """Between two programs of the first picture, present the view that has changed and report the compilation."""
         if self._arriving is not None and self.mapper is not None:
             self._presenter.update_first_look(self._arriving.scene, self._arriving.generation, self.mapper)
-        self._status.report_compilation(program)
+        self._status.report_compilation()
 
     def _fail(self, error: Exception) -> None:
         """Report an error and wait for another scene. The mapper is released, as its state is unknown."""

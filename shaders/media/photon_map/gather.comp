@@ -29,6 +29,7 @@ readonly buffer PhaseFunctions;
 #include "media/free_flight.glsl"
 #include "media/thin_media.glsl"
 #include "media/straight_paths.glsl"
+readonly buffer Triangles;
 #include "density_estimation/photon_grid/cells.glsl"
 readonly buffer Rays;
 readonly buffer CameraPaths;
@@ -41,8 +42,10 @@ readonly buffer Importons;
 readonly buffer Buckets;
 readonly buffer SortedPhotons;
 
+#include "media/photon_map/kernel.glsl"
+
 // In dense places the radius shrinks to that of a sphere of so many photons, but not further than to a part of it.
-const float MOST_EXPECTED = 24.0, LEAST_RADIUS_FACTOR = 0.25;
+const float MOST_EXPECTED = 32.0, LEAST_RADIUS_FACTOR = 0.25;
 
 // A point where photons are gathered, and what they count for.
 struct GatherPoint {
@@ -63,12 +66,11 @@ bool exceeds_depth(uint camera_depth, uint photon) {
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
 }
 
-// Radiance that a photon adds, with the kernel 15 (1 - x^2) / (8 pi), whose integral over the unit ball is 1.
+// Radiance that a photon adds.
 vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {
-    float cosine = dot(photons[photon].direction, point.direction), inverse = 1.0 / radius;
-    float kernel = 15.0 / (8.0 * PI) * (1.0 - distance2 * inverse * inverse) * inverse * inverse * inverse;
+    float cosine = dot(photons[photon].direction, point.direction);
     vec3 phase = scattered_phase(point.flags, point.at, cosine) / max(point.scattering, vec3(1e-30));
-    return point.weight * phase * photons[photon].flux * kernel;
+    return point.weight * phase * photons[photon].flux * photon_kernel(distance2, radius);
 }
 
 // Adds a photon's light to the sums for passes: behind surfaces that have scattered the path, to those of the first.
@@ -126,6 +128,9 @@ void main() {
     float side = parameters.side;
     float expected = float(found) * 4.0 / 3.0 * PI * radius * radius * radius / (float(cells) * side * side * side);
     if (expected > MOST_EXPECTED) radius *= max(pow(MOST_EXPECTED / expected, 1.0 / 3.0), LEAST_RADIUS_FACTOR);
+    if (has_any_grid(path.flags))
+        point.weight *= scattering_over_mean(path.flags, point.position, ray.direction, point.scattering, radius);
+    else point.weight /= 1.0 - kernel_beyond_surfaces(ray, closures[index], point.at.distance, radius);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
     uint passed = 0u, corner = 0u, next = ranges[0].x;
     bool any = false;

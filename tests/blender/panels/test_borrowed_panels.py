@@ -16,7 +16,7 @@ ALIKE = {
     ("CYCLES_RENDER_PT_", "RPPM_PT_"): """
         bake bake_influence bake_output bake_output_margin bake_selected_to_active curves film motion_blur
         motion_blur_curve performance sampling sampling_viewport simplify simplify_culling simplify_render
-        simplify_viewport filter passes
+        simplify_viewport subdivision filter passes
     """,
     ("CYCLES_WORLD_PT_", "RPPM_PT_world_"): "preview ray_visibility surface",
 }
@@ -77,7 +77,6 @@ EXCLUDED = {
     "CYCLES_RENDER_PT_performance_threads": "the graphics device renders",
     "CYCLES_RENDER_PT_performance_viewport": "the viewport finds its resolution itself",
     "CYCLES_RENDER_PT_sampling_advanced_sample_subset": OF_CYCLES,
-    "CYCLES_RENDER_PT_subdivision": OF_CYCLES,
     "CYCLES_RENDER_PT_volumes": OF_CYCLES,
     "CYCLES_WORLD_PT_mist": f"the mist pass: {NOT_RENDERED}",
     "CYCLES_WORLD_PT_volume": NOT_RENDERED,

@@ -78,6 +78,16 @@ def test_panels_are_named_and_shown_for_this_engine_only(scene):
     assert len(drawn_panels(PANELS, context_of(scene, **contexts))) >= 20
 
 
+def test_other_engines_add_themselves_to_a_panel(scene):
+    scene.render.engine = "CYCLES"
+    panel = panels.render.RPPM_PT_film
+    panel.COMPAT_ENGINES.add("CYCLES")
+    try:
+        assert [cls.__name__ for cls in PANELS if cls.poll(context_of(scene))] == ["RPPM_PT_film"]
+    finally:
+        panel.COMPAT_ENGINES.remove("CYCLES")
+
+
 def test_settings_of_developers_show_with_developer_extras_alone(scene):
     def shown(extras):
         context = context_of(scene)
@@ -183,6 +193,22 @@ def test_the_radius_is_that_of_equations_2_and_3(scene):
     reports.record(scene.session_uid, report(RenderKind.VIEWPORT))
     labels = drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels
     assert labels[-2:] == ["Rendered", "1.2 cm in sample 8"]
+    scene.unit_settings.scale_length = 0.001  # units of a millimeter
+    assert drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels[-1] == "12 µm in sample 8"
+    scene.unit_settings.system = "NONE"
+    assert drawn(panels.render.RPPM_PT_radius, context_of(scene)).labels[-1] == "0.012 units in sample 8"
+
+
+def test_samples_come_first(scene):
+    """The panels inside show samples and noise threshold; how light is estimated comes below."""
+    names = [cls.__name__ for cls in panels.CLASSES if getattr(cls, "bl_parent_id", "") == "RPPM_PT_sampling"]
+    assert drawn(panels.sampling.RPPM_PT_sampling, context_of(scene)).properties == []
+    assert names == [
+        f"RPPM_PT_{name}" for name in ("sampling_viewport", "sampling_final", "light_estimation", "advanced")
+    ]
+    for panel in (panels.sampling.RPPM_PT_sampling_viewport, panels.sampling.RPPM_PT_sampling_final):
+        shown = drawn(panel, context_of(scene)).properties
+        assert [name.removeprefix("preview_") for name in shown[1:3]] == ["adaptive_threshold", "samples"]
 
 
 def test_expected_memory(scene):
@@ -321,7 +347,7 @@ def test_the_pause_button_shows_in_rendered_viewports(scene):
     reports.record(scene.session_uid, report(RenderKind.VIEWPORT, warnings=('Material "M": is odd', "b")))
     assert shown("RPPM", "RENDERED").popovers == ["RPPM_PT_viewport_warnings"] and not shown("RPPM", "SOLID").popovers
     listed = drawn(panels.warnings.RPPM_PT_viewport_warnings, context_of(scene))
-    assert listed.labels == ["M (1)", "is odd", "b"] and len(listed.operators) == 1
+    assert listed.labels == ["M: is odd", "B", "Names are in the render tab: Warnings"] and len(listed.operators) == 1
     reports.forget()
     reports.record_viewport_error(scene.session_uid, "no lights")
     assert shown("RPPM", "RENDERED").popovers == ["RPPM_PT_viewport_warnings"]

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from blender_scenes import add_light, add_mesh, export, set_world
-from drawing import context_of, drawn
+from drawing import context_of, drawn, identifiers
 from node_trees import add_node, link, new_material, surface
 
 from rppm_addon.blender import panels, reports
@@ -17,7 +17,8 @@ from rppm_addon.blender.export.view_layer.settings import export_settings
 from rppm_addon.blender.operators import RPPM_OT_select_subject
 from rppm_addon.blender.readings import memory_reading, photon_allocation, radius_reading
 from rppm_addon.blender.reports import RenderKind, RenderReport, viewport_report
-from rppm_addon.blender.subjects import SubjectKind, select, subjects
+from rppm_addon.blender.subjects import SubjectKind, select
+from rppm_addon.blender.warning_groups import grouped, lines_of
 from rppm_addon.integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from rppm_addon.scene import RenderSettings
 from rppm_addon.session.client.client import RendererProcess
@@ -181,36 +182,89 @@ def test_nothing_that_is_reported_is_saved(facing, tmp_path):
     assert b"nowhere in the file" not in (tmp_path / "saved.blend").read_bytes()
 
 
-def test_warnings_are_grouped_by_what_they_are_about():
-    found = subjects(
+def missing_image(material, image):
+    return (
+        f'Material "{material}": node "Image Texture" needs image "{image}", which is missing (//{image}); find it '
+        "with File > External Data > Find Missing Files; magenta stands in"
+    )
+
+
+def test_missing_images_are_one_line_with_one_remedy(facing):
+    texts = [missing_image(f"M{k}", f"{k % 12}.png") for k in range(30)]
+    (group,) = grouped(texts)
+    assert group.title == "12 missing images" and group.count == 30
+    assert [thing.label for thing in group.things] == [f"{k}.png" for k in range(12)]
+    assert group.things[0].name == "M0" and group.things[0].node == "Image Texture"
+    assert group.sentence == (
+        "the node needs image ..., which is missing; find it with File > External Data > Find Missing Files; magenta "
+        "stands in"
+    )
+    reports.record(facing.session_uid, report(warnings=tuple(texts)))
+    record = drawn(panels.warnings.RPPM_PT_warnings, context_of(facing))
+    assert record.labels[:2] == ["30 ", "12 missing images"]
+    assert identifiers(record) == ["file.find_missing_files", *["rppm.select_subject"] * 12]
+    assert grouped(texts[:1])[0].title == "1 missing image"
+    assert lines_of([*texts, "3 % are lost"]) == [
+        '12 missing images ("0.png", "1.png", "10.png" and 9 more); find it with File > External Data > Find Missing '
+        "Files; magenta stands in",
+        "3 % are lost",
+    ]
+
+
+def test_warnings_that_differ_in_names_and_numbers_are_one_group():
+    found = grouped(
         [
-            'Material "Glass "A"": node "Noise.001" (TEX_NOISE) is not rendered yet; 0 is used',
+            'Material "Glass "A"": node "Noise.001" (Noise Texture) is not rendered yet; 0 is used',
             'Object "Cloud": volumes are not rendered yet; it is left out',
             "3.00% of the photons' flux was lost in tracing",
-            'Material "Glass "A"": it has no Material Output node and is black',
-            'Camera "Eye": its negative scale is ignored; the picture is not mirrored',
-            'World "Sky": node "Sky" (TEX_SKY) has the type X, which is not rendered; Y is used',
+            'Object "A": 5 placements have no extent (scale 0) or are not finite and were left out; scale them',
+            'Object "B": 17 placements have no extent (scale 0) or are not finite and were left out; scale them',
+            'World "Sky": node "Sky" (Sky Texture) is not rendered yet; 0 is used',
+            'Material "M": node "Image Texture" has no image and counts as magenta; choose one',
+            'Material "M": node "Image Texture.001" has no image and counts as magenta; choose one',
         ]
     )
-    assert [(subject.kind, subject.name, subject.node) for subject in found] == [
-        (SubjectKind.MATERIAL, 'Glass "A"', "Noise.001"),
-        (SubjectKind.OBJECT, "Cloud", ""),
-        (None, "", ""),
-        (SubjectKind.OBJECT, "Eye", ""),
-        (SubjectKind.WORLD, "Sky", "Sky"),
+    assert [group.title for group in found] == [
+        "The node is not rendered yet (2)",
+        "Cloud: volumes are not rendered yet",
+        "3.00% of the photons' flux was lost in tracing",
+        "... placements have no extent (scale 0) or are not finite and were left out (2)",
+        "2 textures without an image",
     ]
-    assert found[0].texts == [
-        'node "Noise.001" (TEX_NOISE) is not rendered yet; 0 is used', "it has no Material Output node and is black",
-    ]  # fmt: skip
-    assert found[2].texts == ["3.00% of the photons' flux was lost in tracing"]
+    things = [[(thing.kind, thing.name, thing.node) for thing in group.things] for group in found]
+    assert things == [
+        [(SubjectKind.MATERIAL, 'Glass "A"', "Noise.001"), (SubjectKind.WORLD, "Sky", "Sky")],
+        [(SubjectKind.OBJECT, "Cloud", "")],
+        [],
+        [(SubjectKind.OBJECT, "A", ""), (SubjectKind.OBJECT, "B", "")],
+        [(SubjectKind.MATERIAL, "M", "Image Texture"), (SubjectKind.MATERIAL, "M", "Image Texture.001")],
+    ]
+    assert found[0].things[0].label == 'Glass "A", Noise.001' and found[1].things[0].label == "Cloud"
 
 
 def test_many_warnings_are_cut_short_and_counted(facing):
-    texts = [f'Material "M{k % 30}": warning {k}' for k in range(90)]
+    sentences = ["".join(chr(ord("a") + int(digit)) for digit in str(k)) for k in range(30)]
+    texts = [f'Material "M{k}": warns of {text}' for text in sentences for k in range(3)]
     reports.record(facing.session_uid, report(warnings=tuple(texts)))
+    reports.record(facing.session_uid, report(RenderKind.VIEWPORT, warnings=tuple(texts)))
     record = drawn(panels.warnings.RPPM_PT_warnings, context_of(facing))
     assert record.labels[0] == "90 " and record.labels[-1] == "30 more are in the log"
-    assert len(record.operators) == panels.warnings.SUBJECTS_SHOWN and "M0 (3)" in record.labels
+    assert len(record.operators) == 3 * panels.warnings.GROUPS_SHOWN and "M0" in record.labels
+    popover = drawn(panels.warnings.RPPM_PT_viewport_warnings, context_of(facing))
+    assert len(popover.labels) == panels.warnings.LINES_OF_POPOVER + 1
+    assert popover.labels[0] == "Warns of a (3)" and popover.labels[-1].startswith("18 more")
+
+
+def test_the_popover_stays_on_the_screen(facing):
+    reports.record_viewport_error(facing.session_uid, "a word " * 1000)
+    lines = drawn(panels.warnings.RPPM_PT_viewport_warnings, context_of(facing)).labels
+    assert len(lines) == panels.warnings.LINES_OF_POPOVER and lines[-1].endswith(" ...")
+
+
+def test_warnings_are_below_the_samples(facing):
+    names = [cls.__name__ for cls in panels.CLASSES]
+    assert names.index("RPPM_PT_sampling") < names.index("RPPM_PT_warnings") < names.index("RPPM_PT_status")
+    assert "DEFAULT_CLOSED" in panels.warnings.RPPM_PT_warnings.bl_options
 
 
 def test_a_hidden_object_is_said_to_be_hidden(facing):

@@ -25,7 +25,7 @@ UNDER_WAY = SessionStatus(1, progress=PROGRESS, photon_statistics=PHOTONS)
     ("status", "is_paused", "letters", "text"),
     [
         (SessionStatus(), False, 99, "Compiling shaders and building the scene"),
-        (SessionStatus(compilation=CompilationProgress("resolve", 2, 9)), False, 99, "Compiling 2 of 9: resolve"),
+        (SessionStatus(compilation=CompilationProgress(0.254)), False, 99, "Compiling shaders: 25%"),
         (UNDER_WAY, False, 99, "Sample 3/8 | 1.00 k photons/s | Noise 0.5 of 0.1 | Radius 1 cm"),
         (UNDER_WAY, False, 40, "Sample 3/8 | 1.00 k photons/s"),
         (UNDER_WAY, False, 1, "Sample 3/8"),
@@ -70,7 +70,7 @@ def test_an_error_takes_the_place_of_all_else_until_it_is_gone(shown, scene):
 
 
 def test_what_the_process_and_the_export_are_at(shown):
-    assert shown.show(export=ExportProgress(2, 5)) == "Exporting 2 of 5"
+    assert shown.show(export=ExportProgress(2, 5)) == "Exporting: 40%"
     assert shown.show(export=ExportProgress()) == "Exporting"
     shown.process.state = ProcessState.STARTING
     assert shown.show() == "Starting the renderer"

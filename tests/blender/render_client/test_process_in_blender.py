@@ -146,12 +146,3 @@ def test_the_python_that_blender_brings(monkeypatch, tmp_path):
     for name in ("python3-config", "python3"):
         (tmp_path / "bin" / name).touch()
     assert renderer_process.python_program() == str(tmp_path / "bin" / "python3")
-
-
-def test_the_log_lies_in_the_users_folders(monkeypatch):
-    assert renderer_process.log_path() == Path(bpy.utils.user_resource("DATAFILES")) / "rppm" / "renderer.log"
-    asked = []
-    monkeypatch.setattr(bpy.utils, "extension_path_user", lambda package: asked.append(package) or "/folder")
-    monkeypatch.setattr(renderer_process, "__package__", "bl_ext.user_default.rppm.rppm_addon.blender")
-    assert renderer_process.log_path() == Path("/folder/renderer.log")
-    assert asked == ["bl_ext.user_default.rppm"]

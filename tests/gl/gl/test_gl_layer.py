@@ -160,6 +160,20 @@ def test_programs_are_told_of_before_they_first_run(context, scaled):
     library.release()
 
 
+def test_programs_that_have_run_are_compiled(context, scaled):
+    library = ProgramLibrary(context)
+    assert library.compilation_work() == (0, 0)
+    library.compute("scale.comp")
+    library.compute("scale.comp", {"UNUSED": 1})
+    known = library.compilation_work().known
+    assert known > 0
+    scaled(library)
+    assert library.compilation_work().compiled > 0 and library.compilation_work().known == known
+    scaled(library, defines={"UNUSED": 1})
+    assert library.compilation_work() == (known, known)
+    library.release()
+
+
 def test_a_spoiled_binary_is_compiled_again(context, scaled):
     scaled(ProgramLibrary(context))
     for path in binary_cache.cache_folder().glob("*.bin"):

@@ -79,7 +79,8 @@ def open_viewport(device, monkeypatch):
     """A function that opens a viewport, which gives out each iteration's picture in full resolution, and denoises as
     often as it can."""
     monkeypatch.setattr(viewport_scheduler, "FRAME_SECONDS", 0.0)
-    monkeypatch.setattr(viewport_scheduler, "MOST_PICTURE_TIME", math.inf)
+    for name in ("MOST_PICTURE_TIME", "LATER_PICTURE_TIME"):
+        monkeypatch.setattr(viewport_scheduler, name, math.inf)
     monkeypatch.setattr(ResolutionScaler, "levels", lambda *_: [1.0])
     monkeypatch.setattr("rppm_addon.session.render.background_denoising.MOST_TIME", 1.0)
     shown = Shown()

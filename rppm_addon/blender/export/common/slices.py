@@ -8,6 +8,10 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from typing import Any
 
+SHORTEST_SECONDS, LONGEST_SECONDS = 0.03, 0.3
+"""Lengths of slices between which Blender takes little time, and much."""
+_SLICE_RATIO = 0.6
+"""Ratio of a slice to the time that Blender takes between two: exports take up to three eighths of the time."""
 _MOST_STRETCH = 2.5
 """By how much a slice may last longer."""
 _FRESH_SECONDS = 0.005
@@ -25,6 +29,26 @@ class ExportProgress:
 
 class Unfinished(Exception):
     """The time of a slice is over. What was done is kept: who does the same again goes on from there."""
+
+
+class SlicePacing:
+    """Lengths of slices: the longer Blender takes between two of them, the longer they are.
+
+    Redraws of a large scene may take half a second each. Slices that are short beside them would hardly shorten the
+    time for which Blender does not answer, and would have the export wait for many more redraws.
+    """
+
+    def __init__(self) -> None:
+        self._ended_at: float | None = None
+
+    def begin(self) -> float:
+        """Begin a slice and return its length, in seconds."""
+        between = 0.0 if self._ended_at is None else time.monotonic() - self._ended_at
+        return min(max(SHORTEST_SECONDS, _SLICE_RATIO * between), LONGEST_SECONDS)
+
+    def end(self, is_last: bool) -> None:
+        """End a slice; what follows the last one of an export is not measured."""
+        self._ended_at = None if is_last else time.monotonic()
 
 
 class Slices:

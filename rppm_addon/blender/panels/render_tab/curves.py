@@ -3,6 +3,7 @@
 
 import bpy
 
+from .. import cycles_properties
 from ..base import RppmPanel
 
 
@@ -10,13 +11,12 @@ class RPPM_PT_curves(RppmPanel, bpy.types.Panel):
     bl_label = "Curves"
     bl_options = {"DEFAULT_CLOSED"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Where Cycles, whose properties they are, is enabled."""
-        return super().poll(context) and hasattr(context.scene, "cycles_curves")
-
     def draw(self, context: bpy.types.Context) -> None:
-        column, settings = self.column(), context.scene.cycles_curves
+        column = self.column()
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(column, "Shape, Curve Subdivisions")
+            return
+        settings = context.scene.cycles_curves
         column.prop(settings, "shape", text="Shape")
         if settings.shape == "RIBBONS":
             column.prop(settings, "subdivisions", text="Curve Subdivisions")

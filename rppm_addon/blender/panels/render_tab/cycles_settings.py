@@ -6,6 +6,7 @@ from collections.abc import Iterable
 import bpy
 
 from ...export.view_layer.passes import OF_CYCLES
+from .. import cycles_properties
 
 SHARED = {
     "samples": "samples",
@@ -51,9 +52,9 @@ class _CopySettings(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
+    def poll(cls, _context: bpy.types.Context) -> bool:
         """Where Cycles is enabled."""
-        return hasattr(context.scene, "cycles")
+        return cycles_properties.are_there()
 
 
 class RPPM_OT_copy_from_cycles(_CopySettings):

@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ....integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
 from ....session.render.results import PhotonStatistics
@@ -87,16 +88,16 @@ class RPPM_PT_photon_allocation(RppmPanel, bpy.types.Panel):
         column = layout.column(align=True)
         for source in rows[:LIGHTS_SHOWN]:
             line = column.row()
-            line.label(text=source.name, icon=source.icon)
+            line.label(text=source.name, icon=source.icon, translate=False)
             if source.light is not None:
                 line.prop(source.light.rppm, "photon_weight", text="")
             else:
                 line.label(text="")
             if known:
-                line.label(text="" if source.allocated is None else f"{source.allocated:.1%}")
-                line.label(text="" if source.sent is None else f"{source.sent:.1%}")
+                for fraction in (source.allocated, source.sent):
+                    line.label(text="" if fraction is None else f"{fraction:.1%}", translate=False)
         if len(rows) > LIGHTS_SHOWN:
-            layout.label(text=f"and {len(rows) - LIGHTS_SHOWN} more")
+            layout.label(text=iface_("and {} more").format(len(rows) - LIGHTS_SHOWN), translate=False)
         if known:
             layout.label(text="Allocated: by power and weight; Sent: with what was learned", icon="INFO")
         else:

@@ -4,6 +4,7 @@
 import bpy
 
 from ...export.instances.instance_reader import SURFACE_TYPES
+from .. import cycles_properties
 from ..base import RppmPanel
 
 _SHAPES = (
@@ -55,17 +56,21 @@ class RPPM_PT_object_motion_blur(RppmPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         shown = context.object
-        if not super().poll(context) or not hasattr(shown, "cycles"):
+        if not super().poll(context) or shown is None:
             return False
         return shown.type in _BLURRED or (shown.instance_type == "COLLECTION" and shown.instance_collection is not None)
 
     def draw_header(self, context: bpy.types.Context) -> None:
-        self.layout.active = context.scene.render.use_motion_blur
-        self.layout.prop(context.object.cycles, "use_motion_blur", text="")
+        if cycles_properties.are_there():
+            self.layout.active = context.scene.render.use_motion_blur
+            self.layout.prop(context.object.cycles, "use_motion_blur", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        cycles = context.object.cycles
         column = self.column()
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(column, "Motion Blur, Steps, Deformation")
+            return
+        cycles = context.object.cycles
         column.active = context.scene.render.use_motion_blur and cycles.use_motion_blur
         column.prop(cycles, "motion_steps", text="Steps")
         if context.object.type not in {"CAMERA", "LIGHT"}:

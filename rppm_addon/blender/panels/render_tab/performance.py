@@ -2,6 +2,7 @@
 """Panels of the render tab on memory, how renders get on, and diagnostics."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ....scene.common.quantities import bytes_text, count_text, noise_text, rate_text, seconds_text
 from ....scene.settings import AccelerationStructure
@@ -28,7 +29,7 @@ class RPPM_PT_performance(RppmPanel, bpy.types.Panel):
         reading(column, "Photons", bytes_text(photons))
         reading(column, "Picture", bytes_text(memory.by_settings.total_bytes - photons))
         if memory.scene_bytes is None:
-            reading(column, "Scene", "once rendered")
+            reading(column, "Scene", iface_("once rendered"))
         else:
             reading(column, "Scene", bytes_text(memory.scene_bytes))
         reading(column, "Expected", bytes_text(memory.total_bytes))
@@ -82,27 +83,28 @@ class RPPM_PT_status(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         reports, letters = reports_of(context.scene.session_uid), letters_across(context)
         if failure():
-            paragraph(self.layout, f"The renderer has stopped: {failure()}", letters, icon="ERROR")
+            text = iface_("The renderer has stopped: {}").format(failure())
+            paragraph(self.layout, text, letters, icon="ERROR")
             restart_button(self.layout)
         for title, error in (("Viewport", reports.viewport_error), ("Last render", reports.error)):
             if error and error != failure():
-                paragraph(self.layout, f"{title}: {error}", letters, icon="ERROR")
+                paragraph(self.layout, f"{iface_(title)}: {error}", letters, icon="ERROR")
         for report in (reports.viewport, reports.finals[0] if reports.finals else None):
             if report is not None:
-                self.layout.label(text=report.kind.value)
+                self.layout.label(text=iface_(report.kind.value), translate=False)
                 _show(self.column(), report, context.scene)
 
 
 def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Scene) -> None:
     progress, photons = report.progress, report.photon_statistics
-    reading(column, "Samples", f"{progress.iteration} of {report.settings.iterations}")
+    reading(column, "Samples", iface_("{} of {}").format(progress.iteration, report.settings.iterations))
     if progress.noise > 0.0:
         reading(column, "Noise", noise_text(progress.noise, report.settings.adaptive_threshold))
-    reading(column, "Photons", f"{count_text(progress.photons_per_iteration)} a sample")
+    reading(column, "Photons", iface_("{} a sample").format(count_text(progress.photons_per_iteration)))
     reading(column, "Radius", length_text(scene, photons.radius_meters))
     reading(column, "Memory", bytes_text(progress.memory_bytes))
-    reading(column, "Speed", f"{rate_text(progress.iterations_per_second)} samples/s")
-    reading(column, "", f"{rate_text(progress.photons_per_second)} photons/s")
+    reading(column, "Speed", iface_("{} samples/s").format(rate_text(progress.iterations_per_second)))
+    reading(column, "", iface_("{} photons/s").format(rate_text(progress.photons_per_second)))
     reading(column, "Time", seconds_text(progress.elapsed_seconds))
     reading(column, "Building", seconds_text(progress.build_seconds))
     for title, name, taken in (
@@ -110,7 +112,7 @@ def _show(column: bpy.types.UILayout, report: RenderReport, scene: bpy.types.Sce
         ("First Hits", "first_photon_hits", photons.first_photon_hits),
     ):
         if taken:
-            reading(column, title, scene.rppm.bl_rna.properties[name].enum_items[taken].name)
+            reading(column, title, iface_(scene.rppm.bl_rna.properties[name].enum_items[taken].name))
     if report.device:
         reading(column, "Device", report.device)
 
@@ -131,7 +133,7 @@ class RPPM_PT_last_renders(RppmPanel, bpy.types.Panel):
             row = table.row(align=True)
             row.label(text=name)
             for report in finals:
-                row.label(text=text(report))
+                row.label(text=text(report), translate=False)
 
 
 _COMPARED = (

@@ -2,6 +2,7 @@
 """Panels of the render tab that show settings, but for those of sampling."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ...export.camera.camera import frame_size
 from ...export.view_layer.settings import export_settings
@@ -46,17 +47,14 @@ class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
         column.prop(scene.rppm, "alpha")
         column.separator()
         final = radius_reading(export_settings(scene), *frame_size(scene.render))
-        reading(column, "First", f"{final.first:.2f} pixels")
-        reading(column, "Last", f"{final.last:.2f} pixels ({final.shrinkage:.0%})")
+        reading(column, "First", iface_("{:.2f} pixels").format(final.first))
+        reading(column, "Last", iface_("{:.2f} pixels ({:.0%})").format(final.last, final.shrinkage))
         viewport = radius_reading(export_settings(scene, viewport=True), *frame_size(scene.render))
-        reading(column, "Viewport", f"{viewport.shrinkage:.0%} after {scene.rppm.preview_samples}")
+        reading(column, "Viewport", iface_("{:.0%} after {}").format(viewport.shrinkage, scene.rppm.preview_samples))
         report = reports_of(scene.session_uid).latest
         if report is not None:
-            reading(
-                column,
-                "Rendered",
-                f"{length_text(scene, report.photon_statistics.radius_meters)} in sample {report.progress.iteration}",
-            )
+            radius = length_text(scene, report.photon_statistics.radius_meters)
+            reading(column, "Rendered", iface_("{} in sample {}").format(radius, report.progress.iteration))
 
 
 class RPPM_PT_animation(RppmPanel, bpy.types.Panel):

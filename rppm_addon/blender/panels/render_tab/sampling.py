@@ -2,6 +2,7 @@
 """Panels of the render tab on how much is rendered, and their presets."""
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
 from ....denoising.places import REMEDY
 from ....scene.common.quantities import count_text
@@ -20,14 +21,7 @@ class RPPM_PT_sampling(RppmPanel, bpy.types.Panel):
         RPPM_PT_presets.draw_panel_header(self.layout)
 
     def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
-        column = self.column()
-        column.prop(settings, "direct_light", text="Direct")
-        column.prop(settings, "use_final_gather")
-        if RPPM_OT_copy_from_cycles.poll(context):
-            row = column.row(align=True)
-            row.operator(RPPM_OT_copy_from_cycles.bl_idname)
-            row.operator(RPPM_OT_copy_to_cycles.bl_idname)
+        """All is in the panels inside, samples first."""
 
 
 def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: bool) -> None:
@@ -42,7 +36,7 @@ def _draw_samples(column: bpy.types.UILayout, scene: bpy.types.Scene, viewport: 
     column.prop(settings, f"{prefix}samples", text="Max Samples" if is_on else "Samples")
     least = column.column()
     least.active = is_on
-    automatic = f"Automatic: {export_settings(scene, viewport=viewport).least_iterations}"
+    automatic = iface_("Automatic: {}").format(export_settings(scene, viewport=viewport).least_iterations)
     draw_setting(least, scene, f"{prefix}adaptive_min_samples", "Min Samples", automatic)
 
 
@@ -66,7 +60,8 @@ class RPPM_PT_sampling_final(RppmPanel, bpy.types.Panel):
         column = self.column()
         _draw_samples(column, context.scene, viewport=False)
         photons = export_settings(context.scene).photons_for(*rendered_size(context.scene.render))
-        draw_setting(column, context.scene, "photons", "Photons", f"Automatic: {count_text(photons)}")
+        automatic = iface_("Automatic: {}").format(count_text(photons))
+        draw_setting(column, context.scene, "photons", "Photons", automatic)
         draw_setting(column, context.scene, "time_limit", "Time Limit")
 
 
@@ -83,7 +78,8 @@ class _DenoisePanel(RppmPanel):
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
         if not denoising_libraries():
-            paragraph(self.layout, f"Open Image Denoise is not there: {REMEDY}", letters_across(context), icon="ERROR")
+            text = iface_("Open Image Denoise is not there: {}").format(iface_(REMEDY))
+            paragraph(self.layout, text, letters_across(context), icon="ERROR")
         column = self.column()
         column.active = getattr(settings, f"use_{self.prefix}denoising")
         column.prop(settings, f"{self.prefix}denoising_input_passes", text="Passes")
@@ -102,6 +98,16 @@ class RPPM_PT_sampling_final_denoise(_DenoisePanel, bpy.types.Panel):
     bl_parent_id = "RPPM_PT_sampling_final"
 
 
+class RPPM_PT_light_estimation(RppmPanel, bpy.types.Panel):
+    bl_label = "Light Estimation"
+    bl_parent_id = "RPPM_PT_sampling"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.scene.rppm, "direct_light", text="Direct")
+        column.prop(context.scene.rppm, "use_final_gather")
+
+
 class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
     bl_label = "Advanced"
     bl_parent_id = "RPPM_PT_sampling"
@@ -109,9 +115,14 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
-        row = self.column().row(align=True)
+        column = self.column()
+        row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
+        if RPPM_OT_copy_from_cycles.poll(context):
+            row = column.row(align=True)
+            row.operator(RPPM_OT_copy_from_cycles.bl_idname)
+            row.operator(RPPM_OT_copy_to_cycles.bl_idname)
 
 
 CLASSES = (
@@ -120,5 +131,6 @@ CLASSES = (
     RPPM_PT_sampling_viewport_denoise,
     RPPM_PT_sampling_final,
     RPPM_PT_sampling_final_denoise,
+    RPPM_PT_light_estimation,
     RPPM_PT_advanced,
 )

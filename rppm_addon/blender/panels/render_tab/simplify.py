@@ -6,6 +6,7 @@ from bl_ui import properties_render
 from bl_ui.properties_grease_pencil_common import GreasePencilSimplifyPanel
 
 from ...export.instances.instance_reader import SURFACE_TYPES
+from .. import cycles_properties
 from ..base import RppmPanel
 
 
@@ -17,7 +18,9 @@ class RPPM_PT_simplify(RppmPanel, bpy.types.Panel):
         self.layout.prop(context.scene.render, "use_simplify", text="")
 
     def draw(self, context: bpy.types.Context) -> None:
-        """All is in the panels inside."""
+        """All is in the panels inside, but for what Cycles' add-on would add to them."""
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(self.layout, "Texture Limit, Culling")
 
 
 class RPPM_PT_simplify_viewport(RppmPanel, bpy.types.Panel):
@@ -48,7 +51,7 @@ class RPPM_PT_simplify_culling(RppmPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Where Cycles, whose properties they are, is enabled."""
-        return super().poll(context) and hasattr(context.scene, "cycles")
+        return super().poll(context) and cycles_properties.are_there()
 
     def draw(self, context: bpy.types.Context) -> None:
         """For which objects, they say themselves."""
@@ -75,13 +78,15 @@ class RPPM_PT_object_culling(RppmPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return True for objects with a surface, where Cycles, whose properties are shown, is enabled."""
-        seen = context.object is not None and context.object.type in SURFACE_TYPES
-        return super().poll(context) and seen and hasattr(context.object, "cycles")
+        """Return True for objects with a surface."""
+        return super().poll(context) and context.object is not None and context.object.type in SURFACE_TYPES
 
     def draw(self, context: bpy.types.Context) -> None:
         """Whether it is culled where the scene culls."""
         layout, scene = self.layout, context.scene
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(layout, "Camera Culling, Distance Culling")
+            return
         layout.use_property_split, layout.use_property_decorate = True, False
         for name in ("use_camera_cull", "use_distance_cull"):
             row = layout.row()
@@ -96,7 +101,7 @@ class RPPM_PT_simplify_greasepencil(RppmPanel, GreasePencilSimplifyPanel, bpy.ty
 
 
 def _texture_limit(layout: bpy.types.UILayout, scene: bpy.types.Scene, name: str) -> None:
-    if hasattr(scene, "cycles"):  # whose add-on may be off
+    if cycles_properties.are_there():
         column = layout.column()
         column.active = scene.render.use_simplify
         column.prop(scene.cycles, name, text="Texture Limit")

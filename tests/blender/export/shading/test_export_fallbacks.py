@@ -88,7 +88,7 @@ def test_each_fallback_is_named(scene, node, options, inputs, standing_in):
         shader.inputs[name].default_value = value
     _, warnings = single_shader(scene, material)
     assert len(warnings) == bool(standing_in)
-    assert all(f'Material "Material": node "Odd" ({shader.type})' in text for text in warnings)
+    assert all(f'Material "Material": node "Odd" ({shader.bl_label})' in text for text in warnings)
     assert all(standing_in in text and text.endswith("stands in") for text in warnings)
 
 
@@ -114,7 +114,7 @@ def test_an_unknown_value_leaves_that_of_the_socket(scene):
     )
     shader, warnings = single_shader(scene, material)
     assert shader.inputs["color"] == OCHRE[:3]
-    assert any('Material "Material": node "Strange" (SHADERTORGB)' in text for text in warnings)
+    assert any('Material "Material": node "Strange" (Shader to RGB)' in text for text in warnings)
 
 
 def test_a_color_as_a_surface_glows(scene, material, tree):

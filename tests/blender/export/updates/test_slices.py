@@ -2,10 +2,18 @@
 """Work in slices: each step is done once, and threads compute what takes long."""
 
 import threading
+from types import SimpleNamespace
 
 import pytest
 
-from rppm_addon.blender.export.common.slices import Slices, Unfinished
+from rppm_addon.blender.export.common import slices as slices_module
+from rppm_addon.blender.export.common.slices import (
+    LONGEST_SECONDS,
+    SHORTEST_SECONDS,
+    SlicePacing,
+    Slices,
+    Unfinished,
+)
 
 
 def until_done(function, *arguments):
@@ -51,3 +59,17 @@ def test_a_thread_computes_between_slices_and_its_errors_come_back():
     with pytest.raises(ZeroDivisionError):
         slices.computed(record, "wrong", lambda: 1 / 0)
     assert slices.computed(record, "wrong", lambda: 2) == 2
+
+
+@pytest.mark.parametrize(("redraw", "expected"), [(0.01, SHORTEST_SECONDS), (0.2, 0.12), (2.0, LONGEST_SECONDS)])
+def test_slices_follow_the_time_that_blender_takes_between_them(monkeypatch, redraw, expected):
+    now = [100.0]
+    monkeypatch.setattr(slices_module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    pacing = SlicePacing()
+    for _ in range(2):
+        assert pacing.begin() == SHORTEST_SECONDS  # nothing is measured yet
+        pacing.end(is_last=False)
+        now[0] += redraw
+        assert pacing.begin() == pytest.approx(expected)
+        pacing.end(is_last=True)
+        now[0] += 3600.0  # until the next export

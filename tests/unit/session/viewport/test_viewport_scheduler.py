@@ -2,12 +2,12 @@
 """When a viewport renders which scene, at which resolution, and presents a picture."""
 
 import numpy as np
+import pytest
 
 from rppm_addon.scene import Camera, Scene
 from rppm_addon.session.placeholders.resolution_scaler import COARSEST
 from rppm_addon.session.viewport.scheduler import (
     FRAME_SECONDS,
-    MOST_PICTURE_TIME,
     REST_SECONDS,
     ViewportScheduler,
     ViewRequest,
@@ -58,18 +58,33 @@ def test_a_scene_that_failed_does_not_keep_the_next_one_waiting(clock):
     assert scheduler.take().generation == 2
 
 
-def test_pictures_leave_time_to_the_iterations(clock):
+def test_nobody_sees_more_pictures_than_the_screen_shows(clock):
     scheduler = scheduler_of(request(1))
     assert scheduler.is_picture_due(1, 1) and scheduler.is_picture_due(4, 4) and not scheduler.is_picture_due(3, 4)
     present(scheduler, clock)
     assert not scheduler.is_picture_due(2, 1)
     clock[0] += FRAME_SECONDS
     assert scheduler.is_picture_due(3, 1)
-    slow = 0.5
-    present(scheduler, clock, picture_seconds=slow)
-    clock[0] += 0.99 * (slow / MOST_PICTURE_TIME - slow)
-    assert not scheduler.is_picture_due(4, 1)
-    clock[0] += slow
+
+
+def test_early_pictures_come_whatever_they_cost(clock):
+    scheduler = scheduler_of(request(1))
+    present(scheduler, clock, picture_seconds=0.5)
+    assert [iteration for iteration in range(2, 40) if scheduler.is_picture_due(iteration, 1)] == [2, 4, 8, 16, 32]
+    assert [iteration for iteration in range(2, 40) if scheduler.is_picture_due(iteration, 3)] == [3, 6, 12, 24]
+
+
+@pytest.mark.parametrize(
+    ("rendering_seconds", "picture_seconds", "expected"),
+    [(2.0, 0.5, 1.0), (20.0, 0.5, 2.0), (200.0, 0.5, 5.0)],
+    ids=["half of the time", "a tenth more samples", "a tenth of the time"],
+)
+def test_later_pictures_leave_time_to_the_iterations(clock, rendering_seconds, picture_seconds, expected):
+    scheduler = scheduler_of(request(1))
+    present(scheduler, clock, rendering_seconds, picture_seconds)
+    clock[0] += 0.99 * (expected - picture_seconds)
+    assert not scheduler.is_picture_due(5, 1)
+    clock[0] += 0.02 * expected
     assert scheduler.is_picture_due(5, 1)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Node trees to node graphs."""
 
+import re
 from collections.abc import Callable
 
 import bpy
@@ -92,7 +93,10 @@ class GraphExporter:
 
     def warn(self, node: bpy.types.Node, text: str) -> None:
         """Tell the user what is done about a node."""
-        self.context.report.warn(f'{self.owner}: node "{self.name_of(node)}" ({node.type}) {text}')
+        seen = self.user_node(node)
+        # A node that has its type's name is not described twice.
+        kind = "" if re.sub(r"\.\d+$", "", seen.name) == seen.bl_label else f" ({seen.bl_label})"
+        self.context.report.warn(f'{self.owner}: node "{seen.name}"{kind} {text}')
 
     def user_node(self, node: bpy.types.Node) -> bpy.types.Node:
         """The node that the user sees, where Blender made the one that is read."""
@@ -271,7 +275,10 @@ class GraphExporter:
             if value == "":  # a choice of a newer version of Blender, which shows it as none
                 value = values[0]
             if value not in values:
-                self.warn(node, f"has the {name.replace('_', ' ')} {value}, which is not rendered; {values[0]} is used")
+                declared = node.bl_rna.properties[name]
+                names = {item.identifier: item.name for item in getattr(declared, "enum_items", ())}
+                called, used = (names.get(item, item) for item in (value, values[0]))
+                self.warn(node, f"has the {declared.name} {called}, which is not rendered; {used} is used")
                 value = values[0]
             options[name] = value
         return options

@@ -32,7 +32,8 @@ def _mix(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSo
     """A kind for each type of data."""
     kinds = {"FLOAT": "mix_float", "VECTOR": "mix_vector", "RGBA": "mix_color"}
     if node.data_type not in kinds:
-        exporter.warn(node, f"mixes {node.data_type.lower()}s, which is not rendered")
+        kind = node.bl_rna.properties["data_type"].enum_items[node.data_type].name
+        exporter.warn(node, f"has the Data Type {kind}, which is not rendered")
         return None
     kind = kinds[node.data_type]
     if kind == "mix_vector" and node.factor_mode == "NON_UNIFORM":
