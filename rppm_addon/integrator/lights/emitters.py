@@ -286,8 +286,8 @@ def _may_emit(
     scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int], links: LightLinkTable
 ) -> tuple[np.ndarray, ...]:
     """Return columns for the triangles of one instance that may emit: records without radiance, corners (n, 3, 3) in
-    meters, material, whether its emission varies, its other EmitterTraits, its LightLink, and how many sides shine. Smooth
-    surfaces look for no emission that depends on the path that comes there."""
+    meters, material, whether its emission varies, its other EmitterTraits, its LightLink, and how many sides shine.
+    Smooth surfaces look for no emission that depends on the path that comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots, which = _emitting(scene, instance, materials)

@@ -26,7 +26,7 @@ def _cloud(glow: float) -> Material:
 
 
 def _passes(renderer, floor: bool, glow: float = 0.0, film: bool = False):
-    """Passes in the middle of a picture from above, of a cloud of 1 m over a gray floor, or over the world; and Combined."""
+    """Passes in the middle of a picture of a cloud of 1 m, from above, over a gray floor or the world; and Combined."""
     camera = Camera(scenes.looking((0.0, 0.001, 2.0), (0.0, 0.0, 0.0)), (-0.01, 0.01, -0.01, 0.01), 8, 8)
     settings = RenderSettings(
         iterations=1,
