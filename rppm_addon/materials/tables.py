@@ -18,19 +18,19 @@ from ..scene.node_graphs import NodeGraph
 from ..scene.scene import Scene
 from ..scene.storage.sharing import same_members
 from . import albedo_tables, dispersion
-from .bricks import BRICK_VOXELS, Lattice
 from .compiler.constant_layout import ConstantLayout
 from .compiler.scene_graphs import NO_EFFECT, SceneGraphs, TextUse, UnattachedGraph
 from .evaluation import GraphEvaluator, LightSurface
 from .images import image_records
-from .media import MediaTables
-from .medium_grids import PlacedMedium
+from .media.bricks import BRICK_VOXELS, Lattice
+from .media.grids import PlacedMedium
+from .media.tables import MediaTables
+from .media.volume_attributes import VolumeAttributes
+from .media.voxel_evaluation import VoxelEvaluator
 from .records import IMAGE_ENTRY, MATERIAL
 from .traits.emitted import Emits
 from .traits.transparency import passes_shadow_rays
 from .traits.view_dependence import depends_on_view
-from .volume_attributes import VolumeAttributes
-from .voxel_evaluation import VoxelEvaluator
 
 
 def default_material() -> Material:
@@ -94,7 +94,7 @@ class MaterialTables(BufferSet):
         """Graphs that belong to no surface, with the places of their constants, by the graph's identity."""
         self._images: list[Image] = []
         self._records = MATERIAL.zeros(0)
-        """Of all materials, without the copies of MediumPlaces."""
+        """Records of all materials, without the copies of MediumPlaces."""
         self._scene: Scene | None = None
 
     def build(self, scene: Scene) -> None:

@@ -39,8 +39,7 @@ float scattered_flight_pdf(uint flags, Ray ray, float far, float distance) {
     bool world = true;
     uint medium;
     for (uint set = flags >> FIRST_MEDIUM; next_grid(set, world, medium);) {
-        vec3 of_grid = grid_thickness(medium, ray.origin, ray.direction, far, offset);
-        vec3 before = grid_thickness(medium, ray.origin, ray.direction, distance, offset);
+        vec3 before, of_grid = grid_thickness_parts(medium, ray.origin, ray.direction, far, distance, offset, before);
         MediumCoefficients grid = grid_coefficients(medium, PlaceOnRay(ray.origin, ray.direction, distance));
         densities += scattered_densities(grid.absorption + grid.scattering, of_grid, before);
         thickness += of_grid;

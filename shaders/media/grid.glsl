@@ -3,7 +3,7 @@
 // looks the coefficients up with a random offset of up to half a voxel, so that the expected density is that of
 // trilinear interpolation. The includer declares before the block Media. Words of MediumVoxels: for each medium a table
 // of bricks of 8^3 voxels, with the place of each brick's voxels or 0 for a brick without effect, then the voxels, two
-// half floats a word, channel by channel (rppm_addon/materials/bricks.py).
+// half floats a word, channel by channel (rppm_addon/materials/media/bricks.py).
 
 #include "common/half.glsl"
 #include "common/iteration.glsl"
@@ -129,13 +129,26 @@ MediumCoefficients grid_coefficients(uint medium, PlaceOnRay at) {
         medium, GridSpan(brick_place(medium, uvec3(ray.cell) / BRICK_SIDE), voxel_number(uvec3(ray.cell)), 0.0));
 }
 
-// Optical thickness of a grid along a ray.
-vec3 grid_thickness(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
+// Optical thickness of a grid along a ray; before: that up to a part of the distance.
+vec3 grid_thickness_parts(uint medium, vec3 origin, vec3 direction, float distance, float part, vec3 offset,
+                          out vec3 before) {
     GridRay ray = grid_ray(medium, origin, direction, distance, offset);
     vec3 thickness = vec3(0.0);
+    float left = part - ray.start;
+    before = vec3(0.0);
     GridSpan span;
-    while (next_span(ray, span)) thickness += span_extinction(medium, span) * span.extent;
+    while (next_span(ray, span)) {
+        vec3 extinction = span_extinction(medium, span);
+        thickness += extinction * span.extent;
+        before += extinction * clamp(left, 0.0, span.extent);
+        left -= span.extent;
+    }
     return thickness;
+}
+
+vec3 grid_thickness(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
+    vec3 before;
+    return grid_thickness_parts(medium, origin, direction, distance, 0.0, offset, before);
 }
 
 // The distance along a ray at which the optical thickness of a channel comes to a value, by exact inversion;

@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 from ...gl.buffer_sets import ComputeShader, StorageBuffer
+from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ..camera_paths.importons import Importons
@@ -25,6 +26,7 @@ Record(
     segment="uint",
     first_pixel="uint",
     radius="float",
+    free_paths="float",
     side="float",
     buckets="uint",
     first_candidate="uint",
@@ -41,6 +43,11 @@ _EXPECTED_PHOTONS = 8
 _WIDEST = 0.1
 """Largest radius over the radius of the scene."""
 _FEWEST_BUCKETS = 1 << 10
+_WIDEST_KERNEL = 2.5
+"""Largest radius in dense media over that by the number of photons."""
+_FREE_PATHS = 0.7
+"""Radius of the first iteration in dense media, mean free paths."""
+Constants("MediumPhotonKernel", signed=True, WIDEST=_WIDEST_KERNEL)
 _CANDIDATES = 30_000
 """Photons that a thread looks at: llvmpipe ends the loops of a thread after 65535 rounds."""
 
@@ -62,6 +69,7 @@ class MediumPhotonMap(Stage):
     """Photons of the iteration that the map holds."""
     radius = 0.0
     """Radius of the kernel, meters."""
+    _shrinkage = 1.0
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -117,6 +125,7 @@ class MediumPhotonMap(Stage):
                         "segment": segment,
                         "first_pixel": band.first_pixel,
                         "radius": self.radius,
+                        "free_paths": _FREE_PATHS * self._shrinkage,
                         **self._cells,
                         "first_candidate": first,
                         "candidates": _CANDIDATES,
@@ -129,7 +138,8 @@ class MediumPhotonMap(Stage):
     def _radius(self, context: StageContext, iteration: Iteration, volume: float) -> float:
         ball = _EXPECTED_PHOTONS * volume / self.photon_count
         first = min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * context.geometry.radius)
-        return first * shrinkage_in(3, iteration.number, context.settings.alpha)
+        self._shrinkage = shrinkage_in(3, iteration.number, context.settings.alpha)
+        return first * self._shrinkage
 
     @property
     def _buckets(self) -> int:
@@ -137,4 +147,4 @@ class MediumPhotonMap(Stage):
 
     @property
     def _cells(self) -> dict[str, float]:
-        return {"buckets": self._buckets, "side": 2.0005 * self.radius}
+        return {"buckets": self._buckets, "side": 2.0005 * _WIDEST_KERNEL * self.radius}

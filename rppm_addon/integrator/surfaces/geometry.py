@@ -43,6 +43,8 @@ _STARTS = {
 """Members of InstanceEntry that are where a mesh's part of such an array begins."""
 _FAR_VERTICES = 128.0
 """Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
+_MOST_MATERIALS = 1 << 31
+"""Numbers of materials where slots are given, all of which are known."""
 _BLOCK = 256
 """Vertices that are compared side by side: NumPy is slow at reducing many short rows."""
 
@@ -200,12 +202,11 @@ class Geometry(BufferSet):
             for row in range(3):
                 entries[f"row{row}"] = placed[:, row]
             is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in meshes])[which]
-            used_slots = slots or [
-                usable_slots(instance.materials, len(scene.materials)) for instance in scene.instances
-            ]
-            slot_materials = _fill(
-                entries, instances, is_round, [used_slots[index] for index in chosen], default_material
+            of_instances = (
+                [instance.materials for instance in instances] if slots is None else [slots[index] for index in chosen]
             )
+            known = range(len(scene.materials)) if slots is None else range(_MOST_MATERIALS)
+            slot_materials = _fill(entries, instances, is_round, of_instances, known, default_material)
         self.has_round_shapes = bool(instances) and bool(is_round.any())
         boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
         self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
@@ -280,13 +281,14 @@ def _fill(
     entries: np.ndarray,
     instances: list[Instance],
     is_round: np.ndarray,
-    slots_of_instances: list[Sequence[int]],
+    slots_of_instances: Sequence[Sequence[int]],
+    known: range,
     default_material: int,
 ) -> list[int]:
     """Sets, shadows and slots of entries; returns the materials of all slots, the same for instances alike.
 
     is_round: (n,) bool, of which instances triangles stand for strands or points; slots_of_instances: materials of the
-    slots of each, -1 for none.
+    slots of each; those that are not among the ``known`` are the default material.
     """
     visibility = np.array([int(instance.visibility) for instance in instances])
     shadowless = visibility & int(RayVisibility.SHADOW) == 0
@@ -297,15 +299,10 @@ def _fill(
     for key in map(tuple, slots_of_instances):
         if key not in ranges:
             ranges[key] = len(slots), max(1, len(key))
-            slots += [default_material if m < 0 else m for m in key] or [default_material]
+            slots += [m if m in known else default_material for m in key] or [default_material]
     chosen = [ranges[tuple(of_instance)] for of_instance in slots_of_instances]
     entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
     return slots
-
-
-def usable_slots(materials: Sequence[int], count: int) -> list[int]:
-    """Materials of slots, -1 in place of those that are none of ``count``."""
-    return [material if 0 <= material < count else -1 for material in materials]
 
 
 def _packed_sets(linking: LightLinking | None) -> int:

@@ -44,8 +44,10 @@ readonly buffer SortedPhotons;
 
 #include "media/photon_map/kernel.glsl"
 
-// In dense places the radius shrinks to that of a sphere of so many photons, but not further than to a part of it.
-const float MOST_EXPECTED = 32.0, LEAST_RADIUS_FACTOR = 0.25;
+#include <MediumPhotonKernel>
+
+// Among many photons, the radius shrinks to that of a sphere of so many, but not further than to a part of it.
+const float MOST_EXPECTED = 32.0, MOST_EXPECTED_SMOOTH = 200.0, LEAST_RADIUS_FACTOR = 0.25;
 
 // A point where photons are gathered, and what they count for.
 struct GatherPoint {
@@ -73,8 +75,25 @@ vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radi
     return point.weight * phase * photons[photon].flux * photon_kernel(distance2, radius);
 }
 
+// In dense media that are the same everywhere, light is nearly even within a part of the mean free path.
+float smooth_radius(GatherPoint point) {
+    if (has_any_grid(point.flags)) return parameters.radius;
+    MediumCoefficients medium = path_medium(point.flags, point.at);
+    float free_path = 3.0 / max(dot(medium.absorption + medium.scattering, vec3(1.0)), 1e-30);
+    return clamp(parameters.free_paths * free_path, parameters.radius, WIDEST * parameters.radius);
+}
+
+// The radius where cells hold so many photons.
+float crowded_radius(float radius, float photons_a_cell) {
+    float side = parameters.side, least = LEAST_RADIUS_FACTOR * parameters.radius;
+    float expected = photons_a_cell * 4.0 / 3.0 * PI * radius * radius * radius / (side * side * side);
+    float most = radius > parameters.radius ? MOST_EXPECTED_SMOOTH : MOST_EXPECTED;
+    return expected > most ? max(radius * pow(most / expected, 1.0 / 3.0), least) : radius;
+}
+
 // Adds a photon's light to the sums for passes: behind surfaces that have scattered the path, to those of the first.
-void add_light(uint pixel, uint photon, uint history, vec3 radiance) {
+void add_light(uint pixel, uint photon, vec3 radiance) {
+    uint history = parameters.segment == 0u ? 0u : departing_history(importons[pixel].history);
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
         add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
     uint flags = photons[photon].flags, first = first_scatter(history);
@@ -84,6 +103,12 @@ void add_light(uint pixel, uint photon, uint history, vec3 radiance) {
     bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;
     if ((parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u && is_caustic)
         add_to_light_sum(pixel, CAUSTICS_SUM, radiance);
+}
+
+void collect_photon(inout Collected collected, uint pixel, uint photon, vec3 radiance) {
+    photons[photon].depth = photons[photon].depth | PHOTON_CONTRIBUTED;
+    collect_splat(collected, photon, radiance, false, 0u);
+    if (parameters.light_sums != 0u) add_light(pixel, photon, radiance);
 }
 
 GatherPoint gather_point(uint index, CameraPath path, Ray ray) {
@@ -110,8 +135,7 @@ void main() {
         return;
     GatherPoint point = gather_point(index, path, ray);
     if (!(largest(point.scattering) > 0.0)) return;
-    float radius = parameters.radius;
-    uint history = parameters.segment == 0u ? 0u : departing_history(importons[index].history);
+    float radius = smooth_radius(point);
     ivec3 low = cell_of(point.position - radius, parameters.side);
     bvec3 steps = greaterThan(cell_of(point.position + radius, parameters.side), low);
     uint step_bits = (steps.x ? 1u : 0u) | (steps.y ? 2u : 0u) | (steps.z ? 4u : 0u);
@@ -125,9 +149,7 @@ void main() {
         found += ranges[corner].y - ranges[corner].x;
         ++cells;
     }
-    float side = parameters.side;
-    float expected = float(found) * 4.0 / 3.0 * PI * radius * radius * radius / (float(cells) * side * side * side);
-    if (expected > MOST_EXPECTED) radius *= max(pow(MOST_EXPECTED / expected, 1.0 / 3.0), LEAST_RADIUS_FACTOR);
+    radius = crowded_radius(radius, float(found) / float(cells));
     if (has_any_grid(path.flags))
         point.weight *= scattering_over_mean(path.flags, point.position, ray.direction, point.scattering, radius);
     else point.weight /= 1.0 - kernel_beyond_surfaces(ray, closures[index], point.at.distance, radius);
@@ -154,9 +176,7 @@ void main() {
         vec3 radiance = photon_radiance(point, candidate.w, distance2, radius);
         if (!(largest(radiance) > 0.0)) continue;
         any = true;
-        photons[candidate.w].depth = photons[candidate.w].depth | PHOTON_CONTRIBUTED;
-        collect_splat(collected, candidate.w, radiance, false, 0u);
-        if (parameters.light_sums != 0u) add_light(index, candidate.w, history, radiance);
+        collect_photon(collected, index, candidate.w, radiance);
     }
     if (any) write_collected(index, false, collected);
 }

@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import add_light, add_mesh, add_object, depsgraph, export
+from blender_scenes import add_light, add_mesh, depsgraph, export
 
 from rppm_addon.blender.export import ExportStopped, export_scene
 from rppm_addon.scene.errors import SettingsError

@@ -10,7 +10,7 @@ from support.iteration_block import iteration_buffer
 from rppm_addon.gl.buffer_sets import BufferSet, StorageBuffer
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.gl.programs.bindings import ITERATION
-from rppm_addon.materials.bricks import BRICK_VOXELS, Lattice, brick_grid
+from rppm_addon.materials.media.bricks import BRICK_VOXELS, Lattice, brick_grid
 from rppm_addon.materials.records import MATERIAL, MEDIUM
 
 Record("GridTestParameters", count="uint", media="uint")
@@ -163,7 +163,7 @@ def test_grids_and_even_media_add_up(context, library):
 
 
 def test_free_flights_through_several_media_are_exponential(context, library):
-    """Of a grid and a medium around it, the thickness up to collisions is distributed as it is of one medium."""
+    """The thickness of a grid and a medium around it up to collisions is distributed as that of one medium."""
     random = np.random.default_rng(3)
     field = Field(random, (9, 9, 9), turned(0.1))
     body = MEDIUM.zeros(1)[0]

@@ -9,7 +9,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.scene import Camera, Instance, Material, NodeGraph, RenderSettings, Scene, World
+from rppm_addon.scene import Camera, Instance, Light, LightKind, Material, NodeGraph, RenderSettings, Scene, World
 
 SIZE = 8
 COLOR = np.array([0.2, 0.5, 1.0])
@@ -142,6 +142,34 @@ def test_a_world_that_varies_is_rendered_around_the_scene(renderer):
     )
 
 
+def test_a_camera_within_a_medium(renderer):
+    camera = scenes.camera((0, 0, 0.5), (0, 0, -1), 0.5, SIZE, orthographic=True)
+    seen = picture(renderer, scene_of(body_of(linear(2, 1.0, 1.0)), camera=camera))
+    z = 0.5 - camera.clip_start
+    length = (0.5 * z**2 + z) + 0.5  # of densities 1 + z, from the camera down to -1
+    np.testing.assert_allclose(seen, np.broadcast_to(np.exp(-COLOR * length), seen.shape), rtol=1e-2)
+
+
+def scattering(varies: bool) -> Scene:
+    """Fog in a cube over a floor, beside a lamp, whose density nodes may give."""
+    graph = NodeGraph()
+    at = graph.add("tex_coord", "object")
+    density = linear(0, 0.0, 1.0)(graph, at) if varies else 1.0
+    graph.surface = graph.add("volume_scatter", "volume", color=(0.9, 0.6, 0.3), density=density, anisotropy=0.3)
+    fog = Material("fog", material("clear", Lobe(LobeKind.TRANSPARENT)).graph, graph)
+    scene = scene_of(fog, camera=scenes.camera((0, 0, 5), (0, 0, 0), 0.3, SIZE), iterations=4, photons=4000)
+    scenes.add(scene, scenes.square("floor", 4.0, -1.2), scenes.diffuse(0.7, 0.6, 0.5))
+    scene.lights.append(Light("lamp", LightKind.POINT, scenes.placed(1.5, 0.5, 1.5), np.full(3, 20.0)))
+    return scene
+
+
+@pytest.mark.long
+def test_fog_scatters_on_a_grid_as_without_one(renderer):
+    """The same random numbers give the same places where light is scattered."""
+    even, on_a_grid = (picture(renderer, scattering(varies)) for varies in (False, True))
+    np.testing.assert_allclose(on_a_grid, even, rtol=1e-3, atol=1e-4)
+
+
 def infinite(graph: NodeGraph, at):
     large = linear(0, 0.0, 1e38)(graph, at)
     return graph.add("math", "value", options={"operation": "MULTIPLY"}, value=large, value_001=large)
@@ -164,7 +192,7 @@ def test_a_density_of_a_million_leaves_nothing(renderer):
 
 
 def test_grids_larger_than_memory_have_larger_voxels(renderer, monkeypatch):
-    monkeypatch.setattr("rppm_addon.materials.medium_grids.MAX_GRID_BYTES", 1 << 16)
+    monkeypatch.setattr("rppm_addon.materials.media.grids.MAX_GRID_BYTES", 1 << 16)
     scene = scene_of(body_of(linear(0, 0.5, 2.0)))
     seen = renderer.render(scene).frame.combined[..., :3]
     assert len(scene.warnings) == 1 and "voxels are made larger" in scene.warnings[0]

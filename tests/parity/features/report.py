@@ -55,10 +55,9 @@ with the objects that use it. Nodes are named likewise; the remarks further down
 |---|---|
 """
 VOLUMES = (
-    ("What varies within a volume", "one value stands for all of it"),
+    ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it"),
     ("Light of a volume that more than one diffuse surface scatters", "left out"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
-    ("Volume objects, and smoke and fire of fluid domains", "left out; the mesh of the domain is not shown either"),
     (
         "Light Linking of what has a volume that scatters",
         "lights shine on the volume as on objects without Light Linking",

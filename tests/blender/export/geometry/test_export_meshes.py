@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_object, collect, depsgraph, export, show_collection
-from node_trees import add_node, geometry_nodes, link, new_material, node_group
+from node_trees import add_node, geometry_nodes, link, new_material
 
 from rppm_addon.blender.export.geometry.meshes import element_arrays
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_object, export
 from node_trees import add_node, link, new_material, node_group
-from support.vdb_files import write_vdb
+from support.media.vdb_files import write_vdb
 
 from rppm_addon.blender.export.geometry.volumes import gas_domains, vdb_files
 

@@ -42,7 +42,11 @@ def read_grids(volume: bpy.types.Volume) -> tuple[dict[str, VolumeGrid], list[st
         found, messages = {}, []
         for name in dict.fromkeys(metadata.name for metadata in openvdb.readAllGridMetadata(path)):
             if not _is_velocity(volume, name):
-                grid = _read(openvdb, openvdb.read(path, name), name, messages)
+                try:
+                    grid = _read(openvdb.read(path, name), name, messages)
+                except (RuntimeError, TypeError, ValueError):  # such as of points
+                    messages.append(f'its grid "{name}" holds no numbers and is left out')
+                    continue
                 if grid is not None:
                     found[name] = grid
     return found, messages
@@ -68,7 +72,7 @@ def _is_velocity(volume: bpy.types.Volume, name: str) -> bool:
     return name in names - {""}
 
 
-def _read(openvdb: ModuleType, grid: Any, name: str, messages: list[str]) -> VolumeGrid | None:
+def _read(grid: Any, name: str, messages: list[str]) -> VolumeGrid | None:
     """The active part of a grid, with a border of one voxel; None where it has none, or no numbers."""
     value = grid.background
     channels = len(value) if isinstance(value, tuple | list) else 1

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from rppm_addon.materials.bricks import BRICK_VOXELS, Lattice, brick_grid, usable
+from rppm_addon.materials.media.bricks import BRICK_VOXELS, Lattice, brick_grid, usable
 
 COLOR = np.array([0.2, 1.0, 0.5], np.float32)
 BRICKS = 16

@@ -5,14 +5,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..gl.buffer_sets import BufferSet, Part, StorageBuffer
-from ..gl.context.context import Context
-from ..gl.programs.programs import ProgramLibrary
-from ..scene.scene import Scene
-from .medium_grids import EvaluateVoxels, MediumGrids, PlacedMedium
-from .medium_places import MediumPlaces
-from .records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
-from .traits.interiors import Evaluate, Interior, Variation
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...scene.scene import Scene
+from ..records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
+from ..traits.interiors import Evaluate, Interior, Variation
+from .grids import EvaluateVoxels, MediumGrids, PlacedMedium
+from .places import MediumPlaces
 
 _Medium = tuple[np.void, np.ndarray]
 """A MEDIUM record, and its (n,) PHASE_FUNCTION records."""

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ..gl.buffer_sets import BufferSet, StorageBuffer
-from ..gl.buffers.records import Record
-from ..gl.context.context import Context
-from ..gl.programs.program import Bindable
-from ..gl.programs.programs import ProgramLibrary
-from ..scene.scene import Scene
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
+from ...scene.scene import Scene
 from .bricks import BRICK_VOXELS, Lattice
 
 Record(

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..scene.meshes import Instance, Mesh
-from ..scene.scene import Scene
-from ..scene.volumes import Volume
-from .medium_grids import PlacedMedium
-from .records import MAX_MEDIA
-from .traits.interiors import Interior, Variation
+from ...scene.meshes import Instance, Mesh
+from ...scene.scene import Scene
+from ...scene.volumes import Volume
+from ..records import MAX_MEDIA
+from ..traits.interiors import Interior, Variation
+from .grids import PlacedMedium
 from .voxel_evaluation import WORLD
 
 _WORLD_MARGIN = 0.5

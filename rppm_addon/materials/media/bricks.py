@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..gl.buffers.constants import Constants
+from ...gl.buffers.constants import Constants
 
 BRICK_SIDE = 8
 """Voxels along a side of a brick."""

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..gl.buffer_sets import BufferSet, StorageBuffer
-from ..gl.context.context import Context
-from ..gl.programs.programs import ProgramLibrary
-from ..scene.node_graphs import NodeGraph
-from ..scene.scene import Scene
-from ..scene.volumes import Volume
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...scene.node_graphs import NodeGraph
+from ...scene.scene import Scene
+from ...scene.volumes import Volume
+from ..records import MEDIUM, PHASE_FUNCTION
+from ..traits.interiors import Evaluate, Interior, Variation
 from .bricks import BrickGrid, Lattice, brick_grid, usable
-from .records import MEDIUM, PHASE_FUNCTION
-from .traits.interiors import Evaluate, Interior, Variation
 
 VOXELS_ALONG = 128
 """Voxels along the longest side of a grid whose object says nothing of its own."""

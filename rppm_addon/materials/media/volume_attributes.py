@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..gl.buffer_sets import BufferSet, StorageBuffer
-from ..gl.buffers.records import Record
-from ..gl.context.context import Context
-from ..gl.programs.programs import ProgramLibrary
-from ..scene.volumes import Volume, VolumeGrid
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
+from ...scene.volumes import Volume, VolumeGrid
 
 VOLUME_GRID_ENTRY = Record(
     "VolumeGridEntry",
