@@ -36,8 +36,8 @@ PHOTON_BEAM = Record(
     unused1="uint",
     unused2="uint",
 )
-"""The way of a photon through a medium, from ``origin`` to where it is scattered or leaves it, ``extent`` meters away: a
-short beam, whose flux, W, is that at its origin. ``photon`` is the number of the photon at its end; the other members
+"""The way of a photon through a medium, from ``origin`` to where it is scattered or leaves it, ``extent`` meters away:
+a short beam, whose flux, W, is that at its origin. ``photon`` is the number of the photon at its end; the other members
 are those of a Photon and of its PhotonOrigin."""
 StorageBlock("PhotonBeams", "uint beam_count; PhotonBeam photon_beams[];")
 BEAM_TARGET = Record(
