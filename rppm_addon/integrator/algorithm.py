@@ -4,7 +4,6 @@
 from collections.abc import Iterator
 
 from .camera_paths.gbuffer import jittered_view
-from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
@@ -28,6 +27,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         events = stages.events_of(context, iteration, band, radii)
         stages.camera_hits.find(context, importons, view, band)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons, iteration)
+        listeners.band_begun(events)
         yield
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
@@ -36,7 +36,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
             if stages.media.is_on:
-                _add_scattering_in_media(context, stages, band, iteration, segment)
+                _add_scattering_in_media(context, stages, events, segment)
                 yield
             stages.shadow_catcher.cast(context, importons, band, segment)
             stages.direct_light.add(context, importons, band, iteration, segment)
@@ -59,13 +59,12 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
     yield
 
 
-def _add_scattering_in_media(
-    context: StageContext, stages: StageSet, band: Band, iteration: Iteration, segment: int
-) -> None:
+def _add_scattering_in_media(context: StageContext, stages: StageSet, events: BandEvents, segment: int) -> None:
     """Add the light that media scatter toward the camera along the rays of a segment: direct light by shadow rays, and
     all other light by photon beams, where rays come straight from the camera through thin media, or by photons."""
-    importons, sums, beams = stages.importons, stages.density_estimator.sums, stages.photon_beams
-    stages.direct_light.add_in_media(context, importons, band, iteration, segment)
+    importons, band, sums, beams = events.importons, events.band, events.sums, stages.photon_beams
+    if stages.direct_light.add_in_media(context, importons, band, events.iteration, segment):
+        stages.listeners.medium_light_added(events, segment)
     raster = stages.camera_hits.raster(band)
     beams.splat(context, stages.photons, importons, sums, raster, segment)
     beams_from = beams.least_free_path if beams.draws(raster, segment) else None

@@ -80,7 +80,8 @@ class Learning:
 
     def direct_world_flux(self, lights: Lights) -> float:
         """Iteration's, of the next one: where few rays leave the scene, photons find in, and all rays see the world."""
-        shares = self._shares_world_light and lights.world_visibility == RayVisibility.ALL
+        seen_by_all = lights.world_visibility | RayVisibility.VOLUME_SCATTER == RayVisibility.ALL
+        shares = self._shares_world_light and seen_by_all
         return lights.world_photon_flux if shares else 0.0
 
     def tally(

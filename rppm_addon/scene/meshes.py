@@ -120,7 +120,9 @@ class RayVisibility(enum.IntFlag):
     GLOSSY = 4
     TRANSMISSION = 8
     SHADOW = 16
-    ALL = 31
+    VOLUME_SCATTER = 32
+    """Rays that media scatter: of lights, these are the rays by which they light media."""
+    ALL = 63
 
 
 @dataclass(slots=True)

@@ -137,6 +137,14 @@ def _of_lobes(name: str) -> tuple[RenderPass, ...]:
     )
 
 
+def _of_media(part: str, light: str) -> RenderPass:
+    """Light that media scatter toward the camera, before any surface but transparent ones has scattered it."""
+    description = f"A pass of {light} that volumes scatter straight to the camera"
+    return RenderPass(
+        f"Volume {part}", "RGB", PassKind.COLOR, Accumulation.SUM, is_radiance=True, description=description
+    )
+
+
 PASSES = (
     RenderPass("Depth", "Z", PassKind.VALUE, Accumulation.FIRST, "use_pass_z", NOTHING_HIT),
     RenderPass("Mist", "Z", PassKind.VALUE, Accumulation.MEAN, "use_pass_mist", 1.0),
@@ -147,6 +155,8 @@ PASSES = (
     RenderPass("Object Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_object_index"),
     RenderPass("Material Index", "X", PassKind.VALUE, Accumulation.FIRST, "use_pass_material_index"),
     *(entry for name in ("Diffuse", "Glossy", "Transmission") for entry in _of_lobes(name)),
+    _of_media("Direct", "the light of lights"),
+    _of_media("Indirect", "the light of surfaces, and of other places in volumes,"),
     RenderPass("Emission", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_emit", is_radiance=True),
     RenderPass("Environment", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_environment", is_radiance=True),
     RenderPass(
@@ -206,7 +216,10 @@ VECTOR, SHADOW_CATCHER = "Vector", "Shadow Catcher"
 DENOISING_ALBEDO, DENOISING_NORMAL, DENOISING_DEPTH = "Denoising Albedo", "Denoising Normal", "Denoising Depth"
 """Passes that guide denoising."""
 SCATTERED_LIGHT = tuple(entry for entry in PASSES if entry.divided_by)
-"""Light that first surfaces scatter. Times their colors, it adds up with Emission and Environment to Combined."""
+"""Light that first surfaces scatter. Times their colors, it adds up with VOLUME_LIGHT, Emission and Environment to
+Combined."""
+VOLUME_LIGHT = tuple(entry for entry in PASSES if entry.name in {"Volume Direct", "Volume Indirect"})
+"""Light that media scatter straight to the camera."""
 
 
 def passes_named(names: Sequence[str]) -> tuple[RenderPass, ...]:

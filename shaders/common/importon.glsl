@@ -75,11 +75,12 @@ float direct_mis_weight(uint photon_number, float radius) {
 }
 
 // MIS weight of a photon that brings a caustic to the origin of a final gather, whose ray brings the rest unless the
-// path ends before.
+// path ends before. It brings nothing that media have scattered.
 float caustic_mis_weight(uint photon_number, uint importon_history, float radius) {
     float radiance = photon_origins[photon_path_of(photons[photon_number].path)].radiance;
     uint bounces = bounces_of(arrived_depth(importon_history) + photons[photon_number].depth);
-    bool ray_arrives = radiance > 0.0 && bounces <= iteration.camera_bounces;
+    bool ray_arrives = radiance > 0.0 && bounces <= iteration.camera_bounces
+                       && medium_count(photons[photon_number].bounce_counts) == 0u;
     return ray_arrives ? photon_power_heuristic(radiance, iteration.photon_flux, radius) : 1.0;
 }
 

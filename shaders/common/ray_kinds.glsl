@@ -4,7 +4,7 @@
 // The kinds of rays that Cycles distinguishes. Photons count as rays that a diffuse surface sends out.
 #include <RayVisibility>
 const uint RAYS_WITH_VISIBILITY = RAY_CAMERA | RAY_DIFFUSE | RAY_GLOSSY | RAY_TRANSMISSION;
-const uint RAY_SINGULAR = 32u;  // with one of these: it has but one direction
+const uint RAY_SINGULAR = 64u;  // with one of these: it has but one direction
 
 // What the last event of a camera path made of its ray.
 uint camera_ray_kind(uint flags) {

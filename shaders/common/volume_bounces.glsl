@@ -3,16 +3,6 @@
 // direct light only. Light that specular surfaces alone have sent there counts as direct. The includer includes
 // common/iteration.glsl and common/photon.glsl before.
 
-const uint MOST_MEDIUM_VERTICES = 63u;
-
-uint medium_count(uint bounce_counts) { return (bounce_counts >> MEDIUM_COUNT_SHIFT) & MOST_MEDIUM_VERTICES; }
-
-// The counts behind one more vertex in a medium.
-uint medium_counted(uint bounce_counts) {
-    bool full = medium_count(bounce_counts) == MOST_MEDIUM_VERTICES;
-    return full ? bounce_counts : bounce_counts + (1u << MEDIUM_COUNT_SHIFT);
-}
-
 // Whether a photon may count at an importon; own_vertices: of the importon, 1 in a medium and 0 on a surface.
 bool within_volume_bounces(uint bounce_counts, uint photon_flags, uint own_vertices) {
     if (iteration.volume_bounces >= MOST_MEDIUM_VERTICES) return true;

@@ -30,6 +30,9 @@ readonly buffer Closures;
 #include "film/light_colors.glsl"
 readonly buffer Rays;
 buffer CameraPaths;
+#ifdef HETEROGENEOUS_MEDIA
+#include "media/free_flight.glsl"
+#endif
 // iterations in the means; those with a surface
 buffer PassCounts;
 readonly buffer Hits;
@@ -63,22 +66,6 @@ void write_pass(uint which, float value) { write_pass(which, vec4(value, 0.0, 0.
 void write_pass(uint which, vec2 value) { write_pass(which, vec4(value, 0.0, 0.0)); }
 void write_pass(uint which, vec3 value) { write_pass(which, vec4(value, 0.0)); }
 
-// Prepare the passes for the path of an iteration: sums fade by its weight.
-void begin_iteration() {
-    bool first = iteration.number_in_film == 1u;
-    if (first) pass_counts[index] = uvec2(0u);
-    float kept = float(iteration.number_in_film - 1u) / float(iteration.number_in_film);
-    for (uint which = 0u; which < PASS_COUNT; which++) {
-        bool is_sum = PASS_ACCUMULATION[which] == ACCUMULATION_SUM;
-        if (!is_on(which) || !(first || is_sum)) continue;
-        for (uint channel = 0u; channel < PASS_CHANNELS[which]; channel++) {
-            uint place = place_of(which, index) + channel;
-            pass_values[place] = is_sum ? (first ? 0.0 : kept * pass_values[place]) : PASS_NOTHING[which];
-        }
-    }
-    add_to_pass(PASS_DEBUG_SAMPLE_COUNT, index, vec3(1.0));
-}
-
 float view_depth(vec3 position) {
     vec3 offset = position - camera.position;
     if (camera.projection > PROJECTION_ORTHOGRAPHIC) return length(offset);
@@ -100,12 +87,36 @@ vec3 uv_at(Hit at) {
     return vec3(uv, corners.uv0 == corners.uv1 && corners.uv1 == corners.uv2 ? 0.0 : 1.0);
 }
 
-void write_first_surface(Closure closure) {
+// How much of what is behind the media along a ray is seen, where any media of the scene scatter light, and before
+// that of what the ray shows.
+struct SeenThroughMedia {
+    vec3 before;
+    vec3 here;
+};
+
+SeenThroughMedia seen_through_media(CameraPath path, float distance) {
+    SeenThroughMedia seen = SeenThroughMedia(vec3(1.0), vec3(1.0));
+#ifdef MEDIA
+    if (parameters.media_scatter == 0u) return seen;
+    if ((path.flags & PATH_CAMERA_TRANSPARENT) != 0u) seen.before = path.throughput;
+    seen.here = segment_transmittance(path.flags, rays[index].origin, rays[index].direction, distance);
+#endif
+    return seen;
+}
+
+float channel_mean(vec3 color) { return (color.r + color.g + color.b) / 3.0; }
+
+void write_first_surface(Closure closure, SeenThroughMedia seen) {
     counts = pass_counts[index] + uvec2(1u, hit ? 1u : 0u);
     pass_counts[index] = counts;
     uint triangle = hit ? closure.triangle : 0u;
     write_pass(PASS_DEPTH, view_depth(closure.position));
-    write_pass(PASS_MIST, mist_at(closure.position));
+    float mist = mist_at(closure.position);
+#ifdef MEDIA
+    // What media scatter counts as mist.
+    if (parameters.media_scatter != 0u) mist = 1.0 - channel_mean(seen.before * seen.here) * (1.0 - mist);
+#endif
+    write_pass(PASS_MIST, mist);
     write_pass(PASS_POSITION, closure.position + parameters.world_origin);
     write_pass(PASS_NORMAL, unpack_unit_vector(closure.shading_normal));
     write_pass(PASS_UV, uv_at(hits[index]));
@@ -113,8 +124,27 @@ void write_first_surface(Closure closure) {
     write_pass(PASS_MATERIAL_INDEX, float(materials[closure.material].pass_index));
 }
 
+#ifdef MEDIA
+// Adds Denoising Data of the media along a ray: as in Cycles, media that scatter light are seen as a surface that faces
+// the camera, and has their albedo.
+void add_denoising_data_of_media(CameraPath path, float far, SeenThroughMedia seen) {
+    if (!path_may_scatter(path.flags)) return;
+    PlaceOnRay at = PlaceOnRay(rays[index].origin, rays[index].direction, 0.0);
+#ifdef HETEROGENEOUS_MEDIA
+    uvec4 random = pcg4d(uvec4(floatBitsToUint(at.direction), iteration.number));
+    at.distance =
+        sample_scattered_flight(path.flags, rays[index], far, vec2(unit_float(random.x), unit_float(random.y)))
+            .distance;
+#endif
+    MediumCoefficients medium = path_medium(path.flags, at);
+    vec3 albedo = medium.scattering / max(medium.absorption + medium.scattering, vec3(1e-30));
+    add_to_pass(PASS_DENOISING_ALBEDO, index, path.throughput * albedo * (1.0 - seen.here));
+    add_to_pass(PASS_DENOISING_NORMAL, index, vec3(0.0, 0.0, -channel_mean(seen.before * (1.0 - seen.here))));
+}
+#endif
+
 // Adds Denoising Data of a surface. Returns whether no later surface adds to it.
-bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
+bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer, SeenThroughMedia seen) {
     vec3 albedo = closure.diffuse + closure.translucent;
     float rough = largest(albedo), total = rough;
     vec3 normal = rough * unpack_unit_vector(closure.diffuse_normal);
@@ -130,16 +160,30 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer) {
         rough += weight;
     }
     if (total <= 0.0 && largest(closure.transparent) > MOSTLY_TRANSPARENT) return false;
-    float throughput = (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0;
-    add_to_pass(PASS_DENOISING_DEPTH, index, vec3(throughput * closure.distance));
+    add_to_pass(PASS_DENOISING_DEPTH, index, vec3(channel_mean(path.throughput * seen.here) * closure.distance));
     if (total > 0.0 && rough <= (1.0 - MOSTLY_SPECULAR) * total) return false;
-    add_to_pass(PASS_DENOISING_ALBEDO, index, path.throughput * albedo);
+    add_to_pass(PASS_DENOISING_ALBEDO, index, path.throughput * seen.here * albedo);
     if (total <= 0.0) return true;
     normal /= total;
+#ifdef MEDIA
+    normal *= channel_mean(seen.before * seen.here);
+#endif
     add_to_pass(PASS_DENOISING_NORMAL, index,
                 vec3(dot(normal, camera.right), dot(normal, camera.up), dot(normal, camera.forward)));
     return true;
 }
+
+#ifdef MEDIA
+// Emission of media along a ray that escapes to the world: it is none of the environment, as what path_emission.comp
+// adds is then.
+vec3 add_media_emission(CameraPath path, bool denoised) {
+    vec3 emitted =
+        path.throughput * segment_emission(path.flags, rays[index].origin, rays[index].direction, INFINITY_DISTANCE);
+    add_to_pass(PASS_EMISSION, index, emitted);
+    if (!denoised) add_to_pass(PASS_DENOISING_ALBEDO, index, min(emitted, 1.0));
+    return emitted;
+}
+#endif
 
 void add_colors(CameraPath path, Closure closure, vec3 viewer) {
     LightColors colors = light_colors(index, closure, viewer);
@@ -153,7 +197,6 @@ void add_colors(CameraPath path, Closure closure, vec3 viewer) {
 void main() {
     index = active_path();
     if (index == NO_PATH) return;
-    if (parameters.segment == 0u) begin_iteration();
     bool keeps_paths = parameters.keeps_paths != 0u;
     if (!(rays[index].maximum_distance > 0.0)) {
         if (keeps_paths) pass_paths[index].w = 0.0;
@@ -171,13 +214,22 @@ void main() {
     hit = closure_hit(closure);
     uint kind = (hit ? PASS_PATH_HIT : 0u) | (camera_transparent ? PASS_PATH_CAMERA_TRANSPARENT : 0u)
                 | (denoised ? 0u : PASS_PATH_DENOISED);
-    if (keeps_paths) pass_paths[index] = vec4(radiances[index].rgb, uintBitsToFloat(kind));
-    if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction))
+    vec3 before = radiances[index].rgb;
+#ifdef MEDIA
+    if (keeps_paths && !hit && camera_transparent) before += add_media_emission(path, denoised);
+#endif
+    if (keeps_paths) pass_paths[index] = vec4(before, uintBitsToFloat(kind));
+    float far = hit ? closure.distance : INFINITY_DISTANCE;
+    SeenThroughMedia seen = seen_through_media(path, far);
+#ifdef MEDIA
+    if (!denoised && parameters.media_scatter != 0u) add_denoising_data_of_media(path, far, seen);
+#endif
+    if (hit && !denoised && add_denoising_data(path, closure, -rays[index].direction, seen))
         path.flags |= PATH_DENOISING_DATA_FOUND;
     if (hit && colored) add_colors(path, closure, -rays[index].direction);
     if (needs_surface && !is_skipped(closure)) {
         path.flags |= PATH_SURFACE_FOUND;
-        write_first_surface(closure);
+        write_first_surface(closure, seen);
     }
     camera_paths[index].flags = path.flags;
 }

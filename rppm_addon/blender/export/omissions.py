@@ -86,8 +86,6 @@ PASSES = {
     "use_pass_subsurface_indirect": "Subsurface Indirect",
     "use_pass_subsurface_color": "Subsurface Color",
     "use_pass_grease_pencil": "Grease Pencil",
-    "cycles.use_pass_volume_direct": "Volume Direct",
-    "cycles.use_pass_volume_indirect": "Volume Indirect",
     "cycles.use_pass_volume_scatter": "Volume Scatter",
     "cycles.use_pass_volume_transmit": "Volume Transmit",
     "cycles.use_pass_volume_majorant": "Volume Majorant",

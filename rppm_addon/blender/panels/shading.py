@@ -93,6 +93,7 @@ class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
         column = self.column()
         for name in ("camera", "diffuse", "glossy", "transmission"):
             column.prop(thing, f"visible_{name}", text=name.capitalize())
+        column.prop(thing, "visible_volume_scatter", text="Volume Scatter")
         if thing.type != "LIGHT":
             column.prop(thing, "visible_shadow", text="Shadow")
             mask = column.column(heading="Mask")
@@ -137,7 +138,7 @@ class RPPM_PT_world_ray_visibility(RppmPanel, bpy.types.Panel):
         if not cycles_properties.are_there():
             cycles_properties.draw_remedy(column, "Ray Visibility, Max Bounces")
             return
-        for name in ("camera", "diffuse", "glossy", "transmission"):
+        for name in ("camera", "diffuse", "glossy", "transmission", "scatter"):
             column.prop(context.world.cycles_visibility, name)
         column.separator()
         column.prop(context.world.cycles, "max_bounces")

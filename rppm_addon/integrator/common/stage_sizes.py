@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field
 
 from ...materials.traits.subsurface import has_subsurface
-from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, RenderPass
+from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, VOLUME_LIGHT, RenderPass
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits
 from .active_paths import SEGMENTS_AT_ONCE
@@ -67,8 +67,8 @@ class StageSizes:
 
     @property
     def has_scattered_light(self) -> bool:
-        """Whether any pass shows light by how the first surface scatters it."""
-        return any(entry in SCATTERED_LIGHT for entry in self.passes)
+        """Whether any pass shows light by what scatters it first on its way from the camera: a surface or a medium."""
+        return any(entry in SCATTERED_LIGHT or entry in VOLUME_LIGHT for entry in self.passes)
 
     @property
     def has_caustics(self) -> bool:

@@ -35,7 +35,7 @@ StorageBlock("GroupSums", "uint group_words[];")
 _PHOTON_QUANTA = 1 << 24
 _SUM_WORDS, _COUNT_WORDS = 12, 6
 """Words of a pixel in SplatSums, and in PhotonCounts (shaders/density_estimation/splat_sums/sums.glsl)."""
-_SCATTERED_SUMS, _CAUSTICS_SUMS = 6, 2
+_SCATTERED_SUMS, _CAUSTICS_SUMS, _VOLUME_SUMS = 6, 2, 2
 
 
 class LightSum(enum.IntFlag):
@@ -46,6 +46,8 @@ class LightSum(enum.IntFlag):
     CAUSTICS = 2
     GROUPS = 4
     """Sums by the light group of the source."""
+    VOLUME = 8
+    """Sums of what media scatter straight to the camera. They are kept with those of SCATTERED."""
 
     @classmethod
     def of(cls, sizes: StageSizes) -> "LightSum":
@@ -54,6 +56,7 @@ class LightSum(enum.IntFlag):
             cls.SCATTERED: sizes.has_scattered_light,
             cls.CAUSTICS: sizes.has_caustics,
             cls.GROUPS: bool(sizes.light_groups),
+            cls.VOLUME: sizes.has_scattered_light and sizes.features.has_media,
         }
         return functools.reduce(operator.or_, (flag for flag, is_wanted in wanted.items() if is_wanted), cls(0))
 
@@ -65,12 +68,18 @@ Constants(
     CAUSTICS_SUM=_SCATTERED_SUMS,
     FINAL_GATHER_CAUSTICS=_SCATTERED_SUMS + 1,
     CAUSTICS_SUMS=_CAUSTICS_SUMS,
+    VOLUME_DIRECT_SUM=_SCATTERED_SUMS + _CAUSTICS_SUMS,
+    VOLUME_SUMS=_VOLUME_SUMS,
 )
 
 
 def _light_words(sizes: StageSizes) -> int:
     wanted = LightSum.of(sizes)
-    kept = {LightSum.SCATTERED: _SCATTERED_SUMS, LightSum.CAUSTICS: _CAUSTICS_SUMS}
+    kept = {
+        LightSum.SCATTERED: _SCATTERED_SUMS,
+        LightSum.CAUSTICS: _CAUSTICS_SUMS,
+        LightSum.VOLUME: _VOLUME_SUMS,
+    }
     return _SUM_WORDS // 2 * sum(count for flag, count in kept.items() if flag in wanted) * band_pixels(sizes)
 
 

@@ -89,8 +89,6 @@ class StoredPhotons:
     indirect_count: int
     """So many of all of them importons leave to gathering rays."""
     photon_origins: moderngl.Buffer
-    groups: moderngl.Buffer
-    """PhotonGroups, where there are any."""
     photon_flux: float
     """Mean flux of all lights' photons as they leave, W, which are allocated by power."""
     radii: SplatRadii
@@ -115,7 +113,6 @@ class StoredPhotons:
             "Photons": self.photons,
             "StoredPhotons": self.numbers,
             "PhotonOrigins": self.photon_origins,
-            "PhotonGroups": self.groups,
             ITERATION: self.iteration_block,
         }
 

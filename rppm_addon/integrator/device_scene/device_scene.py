@@ -203,9 +203,23 @@ class DeviceScene:
         if not self.materials.media.materials:
             return
         warn_of_open_bodies(scene, self.materials.media.materials, self._checked_bodies)
+        self._warn_of_linked_media(scene)
         settings = scene.settings
         if self.materials.media.emit and not (settings.use_final_gather and settings.camera_bounces > 0):
             scene.warn("Volumes that emit light shine on surfaces by Final Gather only, which is off")
+
+    def _warn_of_linked_media(self, scene: Scene) -> None:
+        media = self.materials.media
+        linked = [
+            instance.object_name
+            for instance in scene.instances
+            if instance.linking is not None
+            and instance.linking.receiver_light_set
+            and not media.materials.isdisjoint(instance.materials)
+        ]
+        if linked and media.scatter:
+            names = ", ".join(sorted(set(linked)))
+            scene.warn(f"Light Linking of volumes ({names}): lights shine on them as on objects without Light Linking")
 
     @contextlib.contextmanager
     def _collect_warnings(self, part: str) -> Iterator[None]:

@@ -107,18 +107,20 @@ class DirectLight(Stage):
 
     def add_in_media(
         self, context: StageContext, importons: Importons, band: Band, iteration: Iteration, segment: int
-    ) -> None:
+    ) -> bool:
         """Add the direct light that media scatter along the rays of the active camera paths, whose hits are resolved.
 
-        Nothing is added where photons bring direct light, or where none of it would come to the film.
+        Returns whether shadow rays were cast: nothing is added where photons bring direct light, or where none of it
+        would come to the film.
         """
         if not context.materials.media.scatter or not iteration.needs_radiance:
-            return
+            return False
         if context.settings.direct_light is not DirectLightMode.RAYS:
-            return
+            return False
         with context.timers.stage("direct light in media"):
             self._sample_lights(self._sample_in_media, context, importons, band, iteration, segment, 0, 1)
             self._cast(context, importons, iteration, segment, has_terminators=False)
+        return True
 
     def _cast(
         self, context: StageContext, importons: Importons, iteration: Iteration, segment: int, has_terminators: bool

@@ -36,6 +36,13 @@ class Listener(Stage):
     events that it needs.
     """
 
+    def band_begun(self, events: BandEvents) -> None:
+        """The camera paths of a band have found their first hits."""
+
+    def medium_light_added(self, events: BandEvents, segment: int) -> None:
+        """Shadow rays have added the direct light that media scatter along the rays of a segment of the camera paths,
+        whose hits are resolved."""
+
     def direct_light_added(self, events: BandEvents, segment: int) -> None:
         """The hits of a segment of the camera paths are resolved, and shadow rays have added direct light to them; the
         paths are not scattered yet."""
@@ -52,6 +59,16 @@ class Listeners:
 
     def __init__(self, listeners: Iterable[Listener]) -> None:
         self._listeners = tuple(listeners)
+
+    def band_begun(self, events: BandEvents) -> None:
+        """Call Listener.band_begun of all listeners."""
+        for listener in self._listeners:
+            listener.band_begun(events)
+
+    def medium_light_added(self, events: BandEvents, segment: int) -> None:
+        """Call Listener.medium_light_added of all listeners."""
+        for listener in self._listeners:
+            listener.medium_light_added(events, segment)
 
     def direct_light_added(self, events: BandEvents, segment: int) -> None:
         """Call Listener.direct_light_added of all listeners."""

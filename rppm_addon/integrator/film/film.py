@@ -29,6 +29,7 @@ Record(
     pixels="uint",
     passes="uint",
     keeps_paths="uint",
+    media_scatter="uint",
     mist_start="float",
     mist_inverse_depth="float",
     mist_exponent="float",
@@ -104,6 +105,7 @@ class Film(Listener):
     _cryptomatte = Part(Cryptomatte)
     _motion_vectors = Part(MotionVectors)
     _aovs = Part(AovPasses)
+    _begin_passes = ComputeShader("film/begin_passes.comp")
     _pass_program = ComputeShader("film/passes.comp")
     _accumulate = ComputeShader("film/accumulate.comp")
     _group_values = FilmBuffer("passes of light groups", "float", _group_channels)
@@ -124,6 +126,14 @@ class Film(Listener):
         self._shows_surfaces = _shows_surfaces(sizes)
         """Whether passes show the first surfaces of paths."""
         self._is_filtered = sizes.is_filtered
+
+    def band_begun(self, events: BandEvents) -> None:
+        """Listener.band_begun: prepare the passes for the iteration."""
+        if not events.iteration.enters_film or not self._shows_surfaces:
+            return
+        context, band = events.context, events.band
+        blocks = {**context.blocks, "PassCounts": self._counts.of(band)}
+        self._begin_passes.run(band.pixel_count, blocks, self._parameters(context, band, 0))
 
     def direct_light_added(self, events: BandEvents, segment: int) -> None:
         """Listener.direct_light_added: add the first surfaces of camera paths to the passes, where the paths reach them
@@ -184,6 +194,7 @@ class Film(Listener):
             "passes": self._passes,
             "segment": segment,
             "keeps_paths": self._add_emission is not None,
+            "media_scatter": context.materials.media.scatter,
             "mist_start": mist.start,
             "mist_inverse_depth": 1.0 / mist.depth if mist.depth > 0.0 else 0.0,
             "mist_exponent": mist.exponent,

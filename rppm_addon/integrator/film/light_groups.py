@@ -64,23 +64,32 @@ class LightGroups(Listener):
         if self.is_on:
             self._grouped.clear()
 
+    def medium_light_added(self, events: BandEvents, segment: int) -> None:
+        """Listener.medium_light_added: add the contributions of shadow rays from media."""
+        if not events.iteration.enters_film:
+            return
+        with events.context.timers.stage("light groups"):
+            self._add_contributions(events)
+
     def direct_light_added(self, events: BandEvents, segment: int) -> None:
         """Listener.direct_light_added: add the contributions of shadow rays, and of light objects along the rays."""
         if not events.iteration.enters_film:
             return
-        context, importons, direct_light = events.context, events.importons, events.direct_light
+        context, importons = events.context, events.importons
         with context.timers.stage("light groups"):
             if context.settings.direct_light is DirectLightMode.RAYS:
-                direct_light.active_rays.run(
-                    self._add_direct,
-                    {**context.blocks, **direct_light.blocks, **self.blocks},
-                    self._parameters(),
-                )
+                self._add_contributions(events)
             importons.active.run(
                 self._add_light_objects,
                 {**context.blocks, **importons.blocks, **self.blocks},
                 {"groups": self._groups},
             )
+
+    def _add_contributions(self, events: BandEvents) -> None:
+        direct_light = events.direct_light
+        direct_light.active_rays.run(
+            self._add_direct, {**events.context.blocks, **direct_light.blocks, **self.blocks}, self._parameters()
+        )
 
     def paths_scattered(self, events: BandEvents, segment: int) -> None:
         """Listener.paths_scattered: add the emission of surfaces and of the world."""

@@ -33,6 +33,7 @@ Record(
     caustics="uint",
     light_sums="uint",
     part="uint",
+    in_media="uint",
     quantum="float",
 )
 StorageBlock("GatheredCaustics", "vec4 gathered_caustics[];")
@@ -85,17 +86,24 @@ class LightPasses(Listener):
         if LightSum.CAUSTICS in self._kept:
             self._gathered_caustics.clear()
 
+    def medium_light_added(self, events: BandEvents, segment: int) -> None:
+        """Listener.medium_light_added: add the contributions of shadow rays from media."""
+        if events.iteration.enters_film:
+            self._add_contributions(events, segment, in_media=True)
+
     def direct_light_added(self, events: BandEvents, segment: int) -> None:
         """Listener.direct_light_added: add the contributions of shadow rays."""
+        by_rays = events.context.settings.direct_light is DirectLightMode.RAYS
+        if events.iteration.enters_film and by_rays:
+            self._add_contributions(events, segment, in_media=False)
+
+    def _add_contributions(self, events: BandEvents, segment: int, in_media: bool) -> None:
         context, direct_light, band = events.context, events.direct_light, events.band
-        by_rays = context.settings.direct_light is DirectLightMode.RAYS
-        if not (events.iteration.enters_film and by_rays):
-            return
         with context.timers.stage("light passes"):
             direct_light.active_rays.run(
                 self._add_direct,
                 {**context.blocks, **events.importons.blocks, **direct_light.blocks, **self.blocks},
-                self._parameters(band, segment),
+                self._parameters(band, segment) | {"in_media": in_media},
             )
 
     def band_ended(self, events: BandEvents) -> None:
@@ -134,5 +142,6 @@ class LightPasses(Listener):
             "caustics": LightSum.CAUSTICS in self._kept,
             "light_sums": int(self._kept),
             "part": int(GatherPart.ALL),
+            "in_media": False,
             "quantum": 0.0,
         }

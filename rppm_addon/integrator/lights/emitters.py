@@ -76,12 +76,12 @@ class Emitters(BufferSet):
         self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve, links: LightLinkTable
     ) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
-        records, corners, kinds, varying, reflected, numbers, sides = _candidates(scene, geometry, materials, links)
+        records, corners, kinds, varying, traits, numbers, sides = _candidates(scene, geometry, materials, links)
         self._ask(records, corners, kinds, varying, resolve)
         bright = records["radiance"].any(axis=1)
         if not bright.all():  # where all are, none of these many bytes is copied
-            records, corners, varying, reflected, numbers, sides = (
-                column[bright] for column in (records, corners, varying, reflected, numbers, sides)
+            records, corners, varying, traits, numbers, sides = (
+                column[bright] for column in (records, corners, varying, traits, numbers, sides)
             )
         self.links = numbers
         self.leaves = triangle_leaves(records, corners.reshape(-1, 3, 3))
@@ -97,8 +97,7 @@ class Emitters(BufferSet):
             steps = chances(weights)
             records["probability"] = steps / _STEPS
             records["cumulated"] = np.cumsum(steps) / _STEPS
-            traits = EmitterTrait.UNEVEN * varying + EmitterTrait.REFLECTED * reflected
-            records["traits"] = traits + (self.links << EMITTER_LINK_SHIFT)
+            records["traits"] = traits + EmitterTrait.UNEVEN * varying + (self.links << EMITTER_LINK_SHIFT)
         self.triangles.upload(records if self.count else EMISSIVE_TRIANGLE.zeros(1))
         self._leaf_numbers.upload(leaf_numbers(self.order) if self.count else np.zeros(1, np.uint32))
         for part in geometry.triangles.ranges(geometry.triangle_count):
@@ -267,7 +266,7 @@ def _candidates(
         if not (placement.instance.materials and dark.issuperset(placement.instance.materials))
     ]
     kinds_of_parts: tuple[DTypeLike, ...] = (
-        EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, bool, np.int64, np.int64
+        EMISSIVE_TRIANGLE.dtype, np.float64, np.int64, bool, np.int64, np.int64, np.int64
     )  # fmt: skip
     columns = list(zip(*found)) if found else [[np.zeros((0,), kind)] for kind in kinds_of_parts]
     del found
@@ -287,8 +286,8 @@ def _may_emit(
     scene: Scene, placement: Placement, materials: MaterialTables, by_path: set[int], links: LightLinkTable
 ) -> tuple[np.ndarray, ...]:
     """Return columns for the triangles of one instance that may emit: records without radiance, corners (n, 3, 3) in
-    meters, material, whether its emission varies, whether smooth surfaces may look for it, its LightLink, and how many
-    sides shine. Smooth surfaces look for no emission that depends on the path that comes there."""
+    meters, material, whether its emission varies, its other EmitterTraits, its LightLink, and how many sides shine.
+    Smooth surfaces look for no emission that depends on the path that comes there."""
     instance = placement.instance
     mesh = scene.meshes[instance.mesh]
     slots, which = _emitting(scene, instance, materials)
@@ -302,7 +301,9 @@ def _may_emit(
     kinds = slots[np.minimum(mesh.triangle_slots[which], len(slots) - 1)]
     varying = np.array([materials.emits[m] is Emits.VARYING for m in kinds], bool)
     seen = instance.visibility & _SEEN_REFLECTED == _SEEN_REFLECTED
-    reflected = seen & np.isin(kinds, list(by_path), invert=True)
+    traits = int(EmitterTrait.REFLECTED) * (seen & np.isin(kinds, list(by_path), invert=True))
+    if not instance.visibility & RayVisibility.VOLUME_SCATTER:
+        traits += int(EmitterTrait.HIDDEN_FROM_MEDIA)
     link = links.of_emitter(instance.linking) if len(records) else NO_LINK
     sides = np.full(len(records), 2 if mesh.shape is MeshShape.SURFACE else 1)
-    return records, corners, kinds, varying, reflected, np.full(len(records), link), sides
+    return records, corners, kinds, varying, traits, np.full(len(records), link), sides

@@ -33,6 +33,8 @@ class EmitterTrait(enum.IntFlag):
     """The emission varies with place or direction."""
     REFLECTED = 2
     """Smooth surfaces look for it: it is seen by reflection as by shadow rays, and hides what is behind it."""
+    HIDDEN_FROM_MEDIA = 4
+    """Media scatter none of its light, before something else has."""
 
 
 EMITTER_LINK_SHIFT = 8
@@ -42,13 +44,13 @@ Constants("EmitterTraits", EMITTER=EmitterTrait, EMITTER_LINK_SHIFT=EMITTER_LINK
 class LightFlag(enum.IntFlag):
     """Flags of a light, above the bits of RayVisibility."""
 
-    SOFT = 32
+    SOFT = 64
     """The light is a disk that faces each point that it lights."""
-    SHADOWLESS = 64
+    SHADOWLESS = 128
     """No shadows are cast in its light."""
-    THROUGH_PORTALS = 128
+    THROUGH_PORTALS = 256
     """The light is that of the world's photons which leave through portals. It is chosen for nothing else."""
-    HOLDS_SURFACES = 256
+    HOLDS_SURFACES = 512
     """Surfaces lie within the light's radius. A sphere lights them from within, and they hide parts of a disk."""
 
 

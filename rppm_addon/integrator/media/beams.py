@@ -30,11 +30,15 @@ PHOTON_BEAM = Record(
     path="uint",
     depth="uint",
     bounce_counts="uint",
-    unused="uint",
+    light_group="uint",
+    max_bounces="uint",
+    unused0="uint",
+    unused1="uint",
+    unused2="uint",
 )
 """The way of a photon through a medium, from ``origin`` to where it is scattered or leaves it, ``extent`` meters away:
 a short beam, whose flux, W, is that at its origin. ``photon`` is the number of the photon at its end; the other members
-are those of a Photon."""
+are those of a Photon and of its PhotonOrigin."""
 StorageBlock("PhotonBeams", "uint beam_count; PhotonBeam photon_beams[];")
 BEAM_TARGET = Record(
     "BeamTarget",

@@ -3,19 +3,17 @@
 
 import moderngl
 
-from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
+from ...gl.buffer_sets import BufferSet, ComputeShader
 from ...gl.buffers.records import Record
-from ..common.stage_sizes import StageSizes, photon_paths
+from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 
 Record("PhotonGroupParameters", count="uint")
 
 
 class PhotonGroups(BufferSet):
-    """Number of the light group of each photon, that of the light which it left."""
+    """Enters the light group of each photon, that of the light which it left, into PhotonOrigins."""
 
-    remedy = "lower the photons per iteration"
-    groups = StorageBuffer("light groups of photons", "uint", photon_paths, block="PhotonGroups")
     _find = ComputeShader("photons/photon_groups/find.comp")
 
     @classmethod
@@ -23,12 +21,12 @@ class PhotonGroups(BufferSet):
         """BufferSet.is_needed: where light groups have passes."""
         return bool(sizes.light_groups)
 
-    def find(self, context: StageContext, rays: moderngl.Buffer, photons: int) -> None:
-        """Take the groups of so many photons, whose rays (RAY) have just left the lights."""
+    def find(self, context: StageContext, rays: moderngl.Buffer, origins: moderngl.Buffer, photons: int) -> None:
+        """Enter the groups of so many photons, whose rays (RAY) have just left the lights, into their PHOTON_ORIGIN."""
         if not self.is_on:
             return
         self._find.run(
             photons,
-            {**context.blocks, **self.blocks, "Rays": rays},
+            {**context.blocks, "Rays": rays, "PhotonOrigins": origins},
             {"count": photons},
         )

@@ -121,7 +121,7 @@ class Photons(Stage):
         with context.timers.stage("emission"):
             self._active.fill(self.photon_count)
             self._emission.emit(context, self.blocks, self.photon_count)
-            self._groups.find(context, rays, self.photon_count)
+            self._groups.find(context, rays, self.photon_origins.buffer, self.photon_count)
             self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
                 context.resolve, rays, hits, self._closures.buffer, paths, self._active, iteration.number
@@ -210,7 +210,6 @@ class Photons(Stage):
             listed.global_photon_count,
             listed.indirect_count,
             self.photon_origins.buffer,
-            self._groups.groups.buffer,
             context.lights.photon_flux,
             radii.splats,
             float(np.max(np.abs(bounds))),

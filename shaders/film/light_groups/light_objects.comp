@@ -1,7 +1,11 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // Adds the light objects that the rays of camera paths intersect to their groups, before the paths are scattered. All
-// other emission at the end of a ray is of one group: emission.comp adds the radiance beyond what is kept here.
+// other emission at the end of a ray is of one group: emission.comp adds the radiance beyond what is kept here. What
+// media along the ray emit is of no group.
 
 layout(local_size_x = 64) in;
 
@@ -39,15 +43,19 @@ void main() {
     path_index = active_path();
     if (path_index == NO_PATH) return;
     Ray ray = rays[path_index];
-    vec3 light_objects = vec3(0.0);
+    vec3 ungrouped = vec3(0.0), light_objects = vec3(0.0);
     CameraPath path = camera_paths[path_index];
+    float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
+#ifdef MEDIA
+    if (ray.maximum_distance > 0.0 && !is_final_gather(path))
+        ungrouped = path.throughput * segment_emission(path.flags, ray.origin, ray.direction, distance);
+#endif
     if (ray.maximum_distance > 0.0 && path_collects_emission(path) && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
         path_throughput = path.throughput;
         if (is_final_gather(path)) path_throughput *= final_gather_origins[path_index].weight;
-        float distance = closure_hit(closures[path_index]) ? closures[path_index].distance : INFINITY_DISTANCE;
         light_objects = path_throughput
                         * visible_light(scatter_point(path_index, path, ray), ray, distance,
                                         camera_ray_kind(path.flags), path.flags);
     }
-    radiance_before[path_index] = vec4(radiances[path_index].rgb + light_objects, 0.0);
+    radiance_before[path_index] = vec4(radiances[path_index].rgb + ungrouped + light_objects, 0.0);
 }

@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What shadow rays bring, for the passes of light. At the ends of gathering rays only caustics are of interest here.
+// What shadow rays bring, for the passes of light, from surfaces or from media. At the ends of gathering rays only
+// caustics are of interest here.
 
 layout(local_size_x = 64) in;
 
@@ -30,6 +31,7 @@ void main() {
                                                            : vec3(0.0));
     } else if (parameters.scattered == 0u) return;
     else if (first_scatter(history) != SCATTER_NONE) add_scattered_light(first_scatter(history), true, index, light);
+    else if (parameters.in_media != 0u) add_volume_light(false, index, light);
     else {
         add_scattered_light(SCATTER_DIFFUSE, false, index, light * (1.0 - glossy - transmission));
         add_scattered_light(SCATTER_GLOSSY, false, index, light * glossy);

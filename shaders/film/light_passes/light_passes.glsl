@@ -9,3 +9,9 @@
 void add_scattered_light(uint scatter, bool indirect, uint pixel, vec3 light) {
     add_to_pass(PASS_DIFFUSE_DIRECT + 3u * (scatter - SCATTER_DIFFUSE) + (indirect ? 1u : 0u), pixel, light);
 }
+
+// Of a medium that nothing but transparent surfaces hides from the camera. indirect: surfaces or media have sent it
+// there.
+void add_volume_light(bool indirect, uint pixel, vec3 light) {
+    add_to_pass(indirect ? PASS_VOLUME_INDIRECT : PASS_VOLUME_DIRECT, pixel, light);
+}

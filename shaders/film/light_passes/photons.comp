@@ -22,4 +22,7 @@ void main() {
         add_scattered_light(scatter, false, index, light_of(index, scattered_sum(scatter, false)));
         add_scattered_light(scatter, true, index, light_of(index, scattered_sum(scatter, true)));
     }
+    if ((parameters.light_sums & LIGHT_SUMS_VOLUME) == 0u) return;
+    add_volume_light(false, index, light_of(index, volume_sum(false)));
+    add_volume_light(true, index, light_of(index, volume_sum(true)));
 }

@@ -23,7 +23,6 @@ readonly buffer PhotonBeams;
 readonly buffer BeamTargets;
 readonly buffer Camera;
 buffer Photons;
-readonly buffer PhotonOrigins;
 #include "density_estimation/splat_sums/signs.glsl"
 #include "media/beams/add.glsl"
 #include "camera_paths/gbuffer/projections.glsl"
@@ -35,7 +34,7 @@ const float LEAST_SINE = 1e-4;
 bool exceeds_depth(uint camera_depth, PhotonBeam beam) {
     if (!within_volume_bounces(beam.bounce_counts, beam.flags, 1u)) return true;
     uint depth = camera_depth + (beam.depth & DEPTH_MASK), most = iteration.max_bounces;
-    if (iteration.limits_bounces != 0u) most = min(most, photon_origins[photon_path_of(beam.path)].max_bounces);
+    if (iteration.limits_bounces != 0u) most = min(most, beam.max_bounces);
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
 }
 

@@ -107,7 +107,7 @@ void main() {
                                          chosen_environment_irradiance(ray.origin, false), v.x, v.y);
     if (!(choice.probability > 0.0)) return;
     Light light = lights[choice.light];
-    if (bounces_of(path.depth) > light.max_bounces) return;
+    if (bounces_of(path.depth) > light.max_bounces || (light.flags & RAY_VOLUME_SCATTER) == 0u) return;
     bool has_place = light.kind != LIGHT_SUN && light.kind != LIGHT_WORLD;
     Equiangular angles = Equiangular(0.0, 1.0, 0.0, 1.0);
     if (has_place) {
@@ -118,6 +118,7 @@ void main() {
     vec3 position = ray.origin + distance * ray.direction;
     LightSample sampled = sample_light(light, choice.triangle, position, v.zw);
     if (!(pdf > 0.0) || !(largest(sampled.weight) > 0.0)) return;
+    if (sampled.triangle != NO_TRIANGLE && (emitter_traits(sampled.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u) return;
     vec3 scattered = scattered_phase(path.flags, PlaceOnRay(ray.origin, ray.direction, distance),
                                      dot(sampled.direction, ray.direction));
     vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, distance);

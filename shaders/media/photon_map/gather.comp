@@ -18,6 +18,8 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/path_history.glsl"
+#include <Importon>
 uniform Parameters { GatherInMediaParameters parameters; };
 readonly buffer Materials;
 readonly buffer Media;
@@ -34,7 +36,9 @@ readonly buffer CameraPaths;
 readonly buffer Closures;
 buffer Photons;
 readonly buffer PhotonOrigins;
+readonly buffer Importons;
 #include "density_estimation/splat_sums/collect.glsl"
+#include "density_estimation/splat_sums/add_light.glsl"
 readonly buffer Buckets;
 readonly buffer SortedPhotons;
 
@@ -85,6 +89,26 @@ float crowded_radius(float radius, float photons_a_cell) {
     float expected = photons_a_cell * 4.0 / 3.0 * PI * radius * radius * radius / (side * side * side);
     float most = radius > parameters.radius ? MOST_EXPECTED_SMOOTH : MOST_EXPECTED;
     return expected > most ? max(radius * pow(most / expected, 1.0 / 3.0), least) : radius;
+}
+
+// Adds a photon's light to the sums for passes: behind surfaces that have scattered the path, to those of the first.
+void add_light(uint pixel, uint photon, vec3 radiance) {
+    uint history = parameters.segment == 0u ? 0u : departing_history(importons[pixel].history);
+    if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
+        add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
+    uint flags = photons[photon].flags, first = first_scatter(history);
+    bool indirect = is_indirect(flags, photons[photon].bounce_counts);
+    if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
+        add_to_light_sum(pixel, first == SCATTER_NONE ? volume_sum(indirect) : scattered_sum(first, true), radiance);
+    bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;
+    if ((parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u && is_caustic)
+        add_to_light_sum(pixel, CAUSTICS_SUM, radiance);
+}
+
+void collect_photon(inout Collected collected, uint pixel, uint photon, vec3 radiance) {
+    photons[photon].depth = photons[photon].depth | PHOTON_CONTRIBUTED;
+    collect_splat(collected, photon, radiance, false, 0u);
+    if (parameters.light_sums != 0u) add_light(pixel, photon, radiance);
 }
 
 GatherPoint gather_point(uint index, CameraPath path, Ray ray) {
@@ -152,8 +176,7 @@ void main() {
         vec3 radiance = photon_radiance(point, candidate.w, distance2, radius);
         if (!(largest(radiance) > 0.0)) continue;
         any = true;
-        photons[candidate.w].depth = photons[candidate.w].depth | PHOTON_CONTRIBUTED;
-        collect_splat(collected, candidate.w, radiance, false, 0u);
+        collect_photon(collected, index, candidate.w, radiance);
     }
     if (any) write_collected(index, false, collected);
 }

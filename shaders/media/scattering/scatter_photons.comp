@@ -15,7 +15,6 @@ layout(local_size_x = 64) in;
 #include "common/path_depth.glsl"
 #include "common/random.glsl"
 #include "common/sampling.glsl"
-#include "photons/scattered_flags.glsl"
 #include "common/volume_bounces.glsl"
 uniform Parameters { ScatterInMediaParameters parameters; };
 readonly buffer Materials;
@@ -33,9 +32,22 @@ writeonly buffer Photons;
 readonly buffer PhotonRange;
 #include <PhotonBeam>
 buffer PhotonBeams;
+readonly buffer PhotonOrigins;
+
+// The flags of a path as those of what it stores in media.
+uint stored_flags(uint path_flags) {
+    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
+    return (path_flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT | PHOTON_INDIRECT))
+           | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
+}
+
+// Whether media scatter no light of a path before something else has.
+bool is_hidden(PhotonPath path) {
+    return (path.bounce_counts & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u;
+}
 
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
-    uint flags = PHOTON_ACTIVE | (path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT));
+    uint flags = PHOTON_ACTIVE | stored_flags(path.flags);
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
                path.depth, path.bounce_counts | PHOTON_IN_MEDIUM, 0u);
@@ -46,15 +58,15 @@ bool is_for_shadow_rays(PhotonPath path) { return iteration.next_event != 0u && 
 
 // The way of the photon becomes a beam with a probability, which is larger for caustics.
 void store_beam(uint index, PhotonPath path, Ray ray, float extent, float u) {
-    if (is_for_shadow_rays(path) || !is_thin(path.flags, parameters.least_free_path)) return;
+    if (is_for_shadow_rays(path) || is_hidden(path) || !is_thin(path.flags, parameters.least_free_path)) return;
     bool caustic = (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
     float probability = min(parameters.beam_probability * (caustic ? 4.0 : 1.0), 1.0);
     if (u >= probability) return;
-    uint flags = path.flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT);
-    photon_beams[atomicAdd(beam_count, 1u)] =
-        PhotonBeam(ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
-                   path.flux / probability, flags, index | parameters.segment << PHOTON_SEGMENT_SHIFT, path.depth,
-                   path.bounce_counts, 0u);
+    PhotonOrigin origin = photon_origins[index];
+    photon_beams[atomicAdd(beam_count, 1u)] = PhotonBeam(
+        ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
+        path.flux / probability, stored_flags(path.flags), index | parameters.segment << PHOTON_SEGMENT_SHIFT,
+        path.depth, path.bounce_counts, origin.light_group, origin.max_bounces, 0u, 0u, 0u);
 }
 
 vec3 turned(vec3 direction, float cosine, float angle) {
@@ -62,6 +74,16 @@ vec3 turned(vec3 direction, float cosine, float angle) {
     tangent_frame(direction, t, b);
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     return normalize(sine * (cos(angle) * t + sin(angle) * b) + cosine * direction);
+}
+
+// Ends a path whose light the media do not scatter, in place of the photon that it would store.
+void end_path(uint index, PhotonPath path, Ray ray) {
+    photons[photon_first + active_place()] =
+        Photon(vec3(0.0), 0u, path.flux, 0u, -ray.direction, 0.0, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
+               path.depth, 0u, 0u);
+    photon_paths[index].flux = vec3(0.0);
+    photon_paths[index].flags |= PATH_SCATTERED_IN_MEDIUM;
+    rays[index].maximum_distance = 0.0;
 }
 
 // Sends the path on from where a medium has scattered it. Russian roulette keeps the flux of photons even.
@@ -83,11 +105,10 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
         survives = false;
     }
     vec3 direction = turned(ray.direction, sample_phase_function(phase, u), angle);
-    const uint kept = PATH_MASK
-                      ^ (PHOTON_INDIRECT | PHOTON_DIRECT | PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY
-                         | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
-    photon_paths[index].flags = (scattered_flags(path.flags, true) & (kept | ~PATH_MASK)) | PHOTON_AFTER_ROUGH_BOUNCE
-                                | PATH_SCATTERED_IN_MEDIUM;
+    // Light that lobes have sent into a medium makes no caustics beyond.
+    const uint gone = PHOTON_INDIRECT | PHOTON_DIRECT | PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED
+                      | PHOTON_CASTS_SHADOWS | PHOTON_SCATTERED_BY_LOBE >> PHOTON_HISTORY_SHIFT;
+    photon_paths[index].flags = (path.flags & ~gone) | PHOTON_AFTER_ROUGH_BOUNCE | PATH_SCATTERED_IN_MEDIUM;
     photon_paths[index].flux = survives ? flux / survival : vec3(0.0);
     photon_paths[index].depth += ONE_BOUNCE;
     photon_paths[index].bounce_counts = bounce_counts;
@@ -116,6 +137,10 @@ void main() {
         vec3 weight = vec3(1.0 / max(flight.passing, 1e-30));
         if (escapes) weight *= segment_transmittance(path.flags, ray.origin, ray.direction, far);
         photon_paths[index].flux = path.flux * weight;
+        return;
+    }
+    if (is_hidden(path)) {
+        end_path(index, path, ray);
         return;
     }
     vec3 position = ray.origin + flight.distance * ray.direction;

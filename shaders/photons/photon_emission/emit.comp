@@ -21,6 +21,7 @@ writeonly buffer PhotonOrigins;
 writeonly buffer PhotonDifferentials;
 
 #include <GuideCells>
+#include <LightGroups>
 
 // The light's own radius, meters, or of a sun the angle of its disk's.
 float light_extent(Light light) {
@@ -41,6 +42,11 @@ PhotonDifferential leaving_differential(Light light, Emission emission, float be
     return PhotonDifferential(parallel ? apart * t : none, known ? 1u : 0u, parallel ? none : apart * t,
                               parallel ? 0.0 : extent, parallel ? apart * b : none, parallel ? extent : 0.0,
                               parallel ? none : apart * b, before);
+}
+
+bool is_hidden_from_media(Light light, Emission emission) {
+    if (emission.triangle != NO_TRIANGLE) return (emitter_traits(emission.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u;
+    return (light.flags & RAY_VOLUME_SCATTER) == 0u;
 }
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
@@ -90,11 +96,13 @@ void main() {
                       | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
                       | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
                       | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
-    photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces);
+    photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces, NO_LIGHT_GROUP);
     if (light.kind == LIGHT_WORLD)
-        photon_origins[index] = PhotonOrigin(largest(world_radiance(-emission.direction)),
-                                             world_shadow_ray_pdf(-emission.direction), light.max_bounces);
-    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0, 0u);
+        photon_origins[index] =
+            PhotonOrigin(largest(world_radiance(-emission.direction)), world_shadow_ray_pdf(-emission.direction),
+                         light.max_bounces, NO_LIGHT_GROUP);
+    photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0,
+                                     is_hidden_from_media(light, emission) ? HIDDEN_FROM_MEDIA : 0u);
     vec3 left_from = emission.origin;
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
     float before = distance(left_from, emission.origin);

@@ -9,12 +9,13 @@ layout(local_size_x = 64) in;
 uniform Parameters { PhotonGroupParameters parameters; };
 #include "lights/light_table.glsl"
 readonly buffer Rays;
-writeonly buffer PhotonGroups;
+writeonly buffer PhotonOrigins;
 readonly buffer LightGroupTable;
 readonly buffer Attributes;
 #include "film/light_groups/table.glsl"
 
 void main() {
     uint index = invocation_index();
-    if (index < parameters.count) photon_groups[index] = light_group(light_of(index), rays[index].source_triangle);
+    if (index < parameters.count)
+        photon_origins[index].light_group = light_group(light_of(index), rays[index].source_triangle);
 }

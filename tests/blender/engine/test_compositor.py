@@ -18,11 +18,11 @@ TYPES = {"VALUE": "FLOAT", "RGBA": "RGBA", "VECTOR": "VECTOR"}
 """Type of a socket of the File Output node, by the kind of its values."""
 NAMES = {"Image": "Combined"}
 """Pass of each socket that is named otherwise than its pass, by the socket's name."""
-EVEN = {"Transmission Direct", "Debug Sample Count"} | {
+EVEN = {"Transmission Direct", "Volume Direct", "Volume Indirect", "Debug Sample Count"} | {
     f"Crypto{kind}{level:02d}" for kind in ("Object", "Material", "Asset") for level in (1, 2)
 }
-"""Passes that are the same all over this picture: no light comes straight through the pane, pixels have all samples,
-and nowhere are there more than two objects."""
+"""Passes that are the same all over this picture: no light comes straight through the pane, there are no volumes,
+pixels have all samples, and nowhere are there more than two objects."""
 
 
 @pytest.fixture

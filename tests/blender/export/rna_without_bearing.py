@@ -56,7 +56,7 @@ volume_preview_step_rate volume_max_steps volume_biased
 WITHOUT_BEARING = {
     "Object": f"{_OBJECT_EVALUATED_BY_BLENDER} {_SHOWN_IN_WINDOWS_ONLY} {_OTHER_ENGINES} "
     # Volumes are named where they are exported; rays leave surfaces of RPPM by an offset of its own.
-    "visible_volume_scatter shadow_terminator_normal_offset",
+    "shadow_terminator_normal_offset",
     "PointLight": _LIGHT,
     "SpotLight": _LIGHT,
     "SunLight": _LIGHT,
@@ -112,7 +112,7 @@ WITHOUT_BEARING = {
     "world.cycles": """
         is_caustics_light sampling_method sample_map_resolution volume_sampling volume_interpolation volume_step_size
     """,
-    "world.cycles_visibility": "scatter",
+    "world.cycles_visibility": "",
     "material.cycles": """
         emission_sampling use_bump_map_correction volume_sampling volume_interpolation volume_step_rate
     """,

@@ -52,12 +52,14 @@ def test_passes_of_all_view_layers(scene):
     """Passes for which Cycles has switches of its own are copied both ways."""
     other = scene.view_layers.new("Other")
     other.cycles.denoising_store_passes = other.cycles.pass_debug_sample_count = True
+    other.cycles.use_pass_volume_indirect = True
     bpy.ops.rppm.copy_from_cycles()
-    assert [getattr(other.rppm, name) for name in OF_CYCLES.values()] == [True, False, True]
+    assert [getattr(other.rppm, name) for name in OF_CYCLES.values()] == [True, False, True, False, True]
     assert not any(getattr(scene.view_layers[0].rppm, name) for name in OF_CYCLES.values())
     other.rppm.use_pass_denoising_data, other.rppm.use_pass_shadow_catcher = False, True
+    other.rppm.use_pass_volume_direct = True
     bpy.ops.rppm.copy_to_cycles()
-    assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True]
+    assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True, True, True]
 
 
 def test_settings_of_light_paths(scene):

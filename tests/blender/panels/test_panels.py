@@ -173,8 +173,8 @@ def test_ray_visibility(scene):
 
     of_mesh = shown(add_mesh(scene))
     assert of_mesh[-3:] == ["visible_shadow", "is_holdout", "is_shadow_catcher"]
-    rays = [f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission")]
-    assert shown(add_light(scene, "POINT")) == of_mesh[:4] == rays
+    rays = [f"visible_{ray}" for ray in ("camera", "diffuse", "glossy", "transmission", "volume_scatter")]
+    assert shown(add_light(scene, "POINT")) == of_mesh[:5] == rays
     assert not panel.poll(context_of(scene, object=add_object(scene, "Empty", None)))
 
 

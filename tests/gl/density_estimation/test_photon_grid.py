@@ -52,7 +52,7 @@ class Device:
         stored = StoredPhotons(
             buffers[0].buffer, listed.buffer, listed.count, listed.count - listed.global_photon_count,
             listed.global_photon_count, listed.indirect_count,
-            buffers[2].buffer, buffers[2].buffer, 1.0, radii,
+            buffers[2].buffer, 1.0, radii,
             float(np.abs(photons["position"]).max()), iteration,
         )  # fmt: skip
         active = ActivePaths(self._context, self._library, "paths", "take fewer")

@@ -96,7 +96,6 @@ def test_groups_that_are_off_take_no_memory(renderer):
         "split of direct light": 32 * pixels,
         "table of light groups": 64,
         "gathered radiance of light groups": 2 * 48 * pixels,
-        "light groups of photons": 4 * 256,
         "light of groups": 2 * 24 * pixels,
         "passes of light groups": 2 * 12 * pixels,
         "radiance before emission": 16 * pixels,

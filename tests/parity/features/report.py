@@ -58,6 +58,14 @@ VOLUMES = (
     ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it"),
     ("Light of a volume that more than one diffuse surface scatters", "left out"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
+    (
+        "Light Linking of what has a volume that scatters",
+        "lights shine on the volume as on objects without Light Linking",
+    ),
+    (
+        "Volume Scatter, in the Ray Visibility of what neither emits light nor is the world",
+        "volumes see it as other surfaces do",
+    ),
 )
 """Uses of volumes that exports name as they come upon them, and what becomes of them."""
 

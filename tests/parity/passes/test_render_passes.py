@@ -5,12 +5,14 @@ import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.scene.passes import CAUSTICS, FILM_PASSES, SCATTERED_LIGHT
+from rppm_addon.scene.passes import CAUSTICS, FILM_PASSES, SCATTERED_LIGHT, VOLUME_LIGHT
 
 from ..engines import PIXEL_CENTERS, cycles_channels, cycles_pass, exported_scene, render_frame, stacked, unfilter
 from ..scenes import DIFFUSE, EMISSION, GLOSSY, ball, camera, light, material, new_scene, place, plane
 
-OF_LIGHT = {CAUSTICS.name}.union(*((entry.name, entry.divided_by) for entry in SCATTERED_LIGHT))
+OF_LIGHT = {CAUSTICS.name, *(entry.name for entry in VOLUME_LIGHT)}.union(
+    *((entry.name, entry.divided_by) for entry in SCATTERED_LIGHT)
+)
 """Passes that test_light_passes.py compares."""
 FIRST_SURFACE = tuple(entry for entry in FILM_PASSES if entry.name not in OF_LIGHT)
 WORLD, MIRROR = 0.3, (0.9, 0.8, 0.7)

@@ -54,7 +54,7 @@ BROKEN = [
     ("lights.0.strength", lambda scene: np.ones(4), r"strength has the shape \(4,\); it must be \(3\)"),
     ("lights.0.shape", lambda scene: "ROUND", "shape is 'ROUND'; it must be one of SQUARE"),
     ("lights.0.kind", lambda scene: "sun", "kind is 'sun'; it must be a LightKind"),
-    ("lights.0.visibility", lambda scene: RayVisibility(1 << 40), "0 to 31"),
+    ("lights.0.visibility", lambda scene: RayVisibility(1 << 40), "0 to 63"),
     ("world.radiance", lambda scene: np.array([NAN, 0.0, 0.0]), "world: radiance is nan"),
     ("camera.matrix", lambda scene: np.zeros((4, 4)), "camera: matrix has axes of no length"),
     ("camera.matrix", lambda scene: np.ones((4, 4)), "camera: matrix has axes of no length or in one plane"),

@@ -9,6 +9,8 @@ OF_CYCLES = {
     "denoising_store_passes": "use_pass_denoising_data",
     "use_pass_shadow_catcher": "use_pass_shadow_catcher",
     "pass_debug_sample_count": "use_pass_debug_sample_count",
+    "use_pass_volume_direct": "use_pass_volume_direct",
+    "use_pass_volume_indirect": "use_pass_volume_indirect",
 }
 """Switches that Cycles adds to view layers, with those of the add-on for the same passes."""
 

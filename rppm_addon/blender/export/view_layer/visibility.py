@@ -5,7 +5,7 @@ import bpy
 
 from ....scene import RayVisibility
 
-_CAMERA, _DIFFUSE, _GLOSSY, _TRANSMISSION, _SHADOW = map(int, RayVisibility)
+_CAMERA, _DIFFUSE, _GLOSSY, _TRANSMISSION, _SHADOW, _VOLUME_SCATTER = map(int, RayVisibility)
 _OF_BITS = [RayVisibility(bits) for bits in range(int(RayVisibility.ALL) + 1)]
 
 
@@ -18,6 +18,7 @@ def visibility_of(source: bpy.types.Object) -> RayVisibility:
         + _GLOSSY * source.visible_glossy
         + _TRANSMISSION * source.visible_transmission
         + _SHADOW * source.visible_shadow
+        + _VOLUME_SCATTER * source.visible_volume_scatter
     ]
 
 

@@ -22,12 +22,13 @@ PHOTON_PATH = Record(
 the channels, what left the scene and what it still carried to the vertex at which a limit cut it off. ``bounce_counts``
 tell how often lobes of each type have scattered it since the surface that its light lit first
 (shaders/common/bounce_counts.glsl); they are 0 where nobody asks. Their fourth count is
-of vertices in media, with FIRST_MEDIUM_LIT."""
+of vertices in media, with FIRST_MEDIUM_LIT and HIDDEN_FROM_MEDIA."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
-PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint")
+PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint", light_group="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
 from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
-how often what it lights may have scattered on the way to the camera."""
+how often what it lights may have scattered on the way to the camera; and the number of its ``light_group``, where
+these have passes."""
 StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 DEPTH_BITS = 11
 """Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""
@@ -76,11 +77,14 @@ SCATTERED_IN_MEDIUM = 1 << PHOTON_FLAG_BITS + 1
 """Flag of a photon path in a segment in which a medium has scattered it, so that no surface does."""
 FIRST_MEDIUM_LIT = 1 << 30
 """Flag above the count of vertices in media: light came to the first of them straight or by specular surfaces."""
+HIDDEN_FROM_MEDIA = 1 << 29
+"""Flag above that count: from a light of which media scatter nothing until something else has."""
 Constants(
     "MediumScattering",
     PATH_SCATTERED_IN_MEDIUM=SCATTERED_IN_MEDIUM,
     FIRST_MEDIUM_LIT=FIRST_MEDIUM_LIT,
     MEDIUM_COUNT_SHIFT=24,
+    HIDDEN_FROM_MEDIA=HIDDEN_FROM_MEDIA,
 )
 Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
 """A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""

@@ -38,5 +38,3 @@ StorageBlock(
     "StoredPhotons", "uint stored_count; uint global_photon_count; uint indirect_count; uint stored_photons[];"
 )
 """Numbers of the stored photons, behind the counts of all of them, of the global and of the indirect ones."""
-StorageBlock("PhotonGroups", "uint photon_groups[];")
-"""Light group numbers of the photons that left the lights."""

@@ -22,6 +22,16 @@ _EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}
 """Exponents of mist, by its falloff."""
 
 
+_KINDS_OF_RAYS = {
+    "camera": RayVisibility.CAMERA,
+    "diffuse": RayVisibility.DIFFUSE,
+    "glossy": RayVisibility.GLOSSY,
+    "transmission": RayVisibility.TRANSMISSION,
+    "scatter": RayVisibility.VOLUME_SCATTER,
+}
+"""Kinds of rays by the names that Cycles' properties of worlds have."""
+
+
 def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple[World, list[Light]]:
     """The environment, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
@@ -38,8 +48,7 @@ def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple
 def _visibility_of(world: bpy.types.World) -> RayVisibility:
     """The rays that see the world; all where Cycles, whose property it is, is switched off."""
     said = getattr(world, "cycles_visibility", None)
-    kinds = ("camera", "diffuse", "glossy", "transmission")
-    hidden = (RayVisibility[kind.upper()] for kind in kinds if not getattr(said, kind, True))
+    hidden = (kind for name, kind in _KINDS_OF_RAYS.items() if not getattr(said, name, True))
     return functools.reduce(lambda visibility, kind: visibility & ~kind, hidden, RayVisibility.ALL)
 
 
