@@ -36,12 +36,17 @@ MEDIUM = Record(
     to_grid2="vec4",
     voxels="uvec3",
     first_word="uint",
+    material_medium="uint",
+    medium_bits="uint",
+    unused0="uint",
+    unused1="uint",
 )
 """A participating medium: its absorption and scattering coefficients, 1/m, the radiance that it emits by length,
 W/(m^3 sr), and the place of its phase functions in PhaseFunctions. Where these vary, they are scales of channels of a
 grid of ``voxels`` (0 without one): the channels of the three (bricks.py), a byte each from the lowest; the rows of the
 matrix from the world to the grid, in which voxel i reaches from i to i + 1; and where its table of bricks begins in
-MediumVoxels."""
+MediumVoxels. ``material_medium`` is not of this medium: item n has that of material n, as the record Material; programs
+with many storage blocks then need no block Materials. ``medium_bits`` are those of the record Material as well."""
 StorageBlock("Media", "Medium media[];")
 
 

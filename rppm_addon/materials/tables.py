@@ -93,8 +93,6 @@ class MaterialTables(BufferSet):
         self._unattached: dict[int, tuple[UnattachedGraph, int]] = {}
         """Graphs that belong to no surface, with the places of their constants, by the graph's identity."""
         self._images: list[Image] = []
-        self._records = MATERIAL.zeros(0)
-        """Records of all materials, without the copies of MediumPlaces."""
         self._scene: Scene | None = None
 
     def build(self, scene: Scene) -> None:
@@ -128,13 +126,12 @@ class MaterialTables(BufferSet):
         self._upload_images(layout.images())
         self.media.build(scene, records, graphs.interiors, graphs.world_interior, self.evaluate)
         self._materials.upload(records)
-        self._records = records
 
     def place_media(self, scene: Scene) -> bool:
         """Give each instance whose medium varies a material of its own; returns whether there are any."""
         if not self.media.places.any:
             return False
-        self._materials.upload(self.media.places.place(scene, self._records))
+        self._materials.upload(self.media.place(scene))
         return True
 
     def bake_media(

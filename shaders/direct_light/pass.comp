@@ -24,7 +24,6 @@ buffer ShadowRays;
 buffer Contributions;
 readonly buffer CameraPaths;
 #ifdef MEDIA
-readonly buffer Materials;
 readonly buffer Media;
 buffer ShadowMedia;
 #include "common/bsdf/closure.glsl"

@@ -19,7 +19,6 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/transparency.glsl"
 #include "common/path_history.glsl"
-readonly buffer Materials;
 readonly buffer Media;
 #include "materials/medium.glsl"
 uniform Parameters { DirectLightParameters parameters; };

@@ -2,8 +2,8 @@
 // Participating media of paths. Only materials with a volume fill the inside of their surfaces, and media that overlap
 // add up, as in Cycles. A path carries the numbers of the media that it is in: the upper 20 bits of its flags have as
 // many places as the scene's media leave room for, the lowest for the medium that it entered last; 0 is none. All paths
-// are in medium 0, the world's. Scenes without media are compiled without MEDIA. The includer declares before the block
-// Materials, and with MEDIA the block Media.
+// are in medium 0, the world's. Scenes without media are compiled without MEDIA. With MEDIA the includer declares
+// before the block Media.
 
 #include <Media>
 const uint PATH_MASK = (1u << FIRST_MEDIUM) - 1u;
@@ -32,7 +32,7 @@ vec3 seen_length(vec3 extinction, float distance) {
 #include "media/grid.glsl"
 
 #ifdef MEDIA
-uint medium_bits() { return materials[0].medium_bits; }
+uint medium_bits() { return media[0].medium_bits; }
 
 uint enter_medium(uint media, uint medium) {
     uint bits = medium_bits();
@@ -189,7 +189,7 @@ bool path_may_scatter(uint flags) {
 
 // The flags of a path after it has passed through a surface of a material, which it came to from behind or not.
 uint cross_surface(uint flags, uint material, bool backfacing) {
-    uint medium = materials[material].medium;
+    uint medium = media[material].material_medium;
     if (medium == 0u) return flags;
     uint set = flags >> FIRST_MEDIUM;
     set = backfacing ? leave_medium(set, medium) : enter_medium(set, medium);

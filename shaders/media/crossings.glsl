@@ -28,7 +28,7 @@ Crossing next_crossing(inout Ray ray) {
         float offset = ray_offset(normal, v0, v1, v2);
         vec3 origin = position + (leaves ? offset : -offset) * normal;
         ray = Ray(origin, hit.triangle, ray.direction, ray.maximum_distance - hit.distance);
-        uint medium = materials[attributes[hit.triangle].material].medium;
+        uint medium = media[attributes[hit.triangle].material].material_medium;
         if (medium > 0u) return Crossing(medium, leaves);
         if (!(ray.maximum_distance > 0.0)) break;
     }

@@ -19,7 +19,6 @@ readonly buffer MediumBoxes;
 readonly buffer Rays;
 buffer CameraPaths;
 readonly buffer Hits;
-readonly buffer Materials;
 readonly buffer Media;
 #include "media/crossings.glsl"
 

@@ -19,7 +19,6 @@ readonly buffer Rays;
 #include <Lights>
 #include <LightFlags>
 buffer PhotonPaths;
-readonly buffer Materials;
 readonly buffer Media;
 #include "media/crossings.glsl"
 

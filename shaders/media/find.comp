@@ -15,7 +15,6 @@ writeonly buffer MediaOfSources;
 readonly buffer Attributes;
 readonly buffer MediumBoxes;
 #include "lights/light_table.glsl"
-readonly buffer Materials;
 readonly buffer Media;
 #include "media/crossings.glsl"
 

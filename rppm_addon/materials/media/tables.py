@@ -9,7 +9,7 @@ from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.scene import Scene
-from ..records import MAX_MEDIA, MEDIUM, PHASE_FUNCTION
+from ..records import MATERIAL, MAX_MEDIA, MEDIUM, PHASE_FUNCTION
 from ..traits.interiors import Evaluate, Interior, Variation
 from .grids import EvaluateVoxels, MediumGrids, PlacedMedium
 from .places import MediumPlaces
@@ -42,6 +42,7 @@ class MediaTables(BufferSet):
         """Whether the world's medium scatters light."""
         self.places = MediumPlaces({}, None, 0)
         """Media that vary."""
+        self._records, self._material_count = MATERIAL.zeros(1), 1
         self._even: list[_Medium] = []
         """The world's medium, and those that are the same everywhere."""
 
@@ -64,7 +65,13 @@ class MediaTables(BufferSet):
         varying = {index: interior for index, interior in enumerate(interiors) if interior.varies}
         self.places = MediumPlaces(varying, world if world_varies else None, len(filled))
         self.materials = frozenset(filled) | frozenset(varying)
+        self._records, self._material_count = records, len(records)
         self._upload(self._even)
+
+    def place(self, scene: Scene) -> np.ndarray:
+        """Return the (n,) MATERIAL records for the instances of a scene; ``bake`` is to follow."""
+        self._records = self.places.place(scene, self._records[: self._material_count])
+        return self._records
 
     def bake(
         self, scene: Scene, media: Sequence[PlacedMedium], evaluate: EvaluateVoxels, evaluate_once: Evaluate
@@ -79,7 +86,11 @@ class MediaTables(BufferSet):
         for record, functions in listed:
             record["first_function"] = first
             first += len(functions)
-        self._media.upload(np.array([record for record, _ in listed]))
+        media = MEDIUM.zeros(max(len(listed), len(self._records)))
+        media[: len(listed)] = [record for record, _ in listed]
+        media["material_medium"][: len(self._records)] = self._records["medium"]
+        media["medium_bits"] = self._records["medium_bits"][0]
+        self._media.upload(media)
         self._phase_functions.upload(np.concatenate([functions for _, functions in listed] + [PHASE_FUNCTION.zeros(1)]))
         self.emit = any(record["emission"].any() for record, _ in listed)
         self.scatter = any(record["scattering"].any() for record, _ in listed)

@@ -20,7 +20,6 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
-readonly buffer Materials;
 readonly buffer Media;
 #include "materials/medium.glsl"
 uniform Parameters { ScatterImportonsParameters parameters; };

@@ -26,7 +26,6 @@ writeonly buffer RadianceBefore;
 readonly buffer LightGroupTable;
 readonly buffer FinalGatherOrigins;
 readonly buffer FinalGatherHits;
-readonly buffer Materials;
 readonly buffer Media;
 #include "materials/medium.glsl"
 

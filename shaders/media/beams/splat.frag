@@ -14,7 +14,6 @@
 uniform Parameters { BeamParameters parameters; };
 #include <PhotonBeam>
 #include <BeamTarget>
-readonly buffer Materials;
 readonly buffer Media;
 readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"

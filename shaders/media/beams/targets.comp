@@ -14,7 +14,6 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/bsdf/closure.glsl"
 uniform Parameters { BeamTargetParameters parameters; };
-readonly buffer Materials;
 readonly buffer Media;
 #include "materials/medium.glsl"
 #include "media/thin_media.glsl"

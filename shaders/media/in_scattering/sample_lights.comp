@@ -16,7 +16,6 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/path_depth.glsl"
-readonly buffer Materials;
 readonly buffer Media;
 readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"

@@ -21,7 +21,6 @@ layout(local_size_x = 64) in;
 #include "common/path_history.glsl"
 #include <Importon>
 uniform Parameters { GatherInMediaParameters parameters; };
-readonly buffer Materials;
 readonly buffer Media;
 readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"

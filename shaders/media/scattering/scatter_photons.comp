@@ -17,7 +17,6 @@ layout(local_size_x = 64) in;
 #include "common/sampling.glsl"
 #include "common/volume_bounces.glsl"
 uniform Parameters { ScatterInMediaParameters parameters; };
-readonly buffer Materials;
 readonly buffer Media;
 readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
