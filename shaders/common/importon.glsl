@@ -14,6 +14,14 @@
 #include "common/volume_bounces.glsl"
 #endif
 readonly buffer PhotonOrigins;
+#ifdef DROPS_CAUSTICS
+#include <CausticKinds>
+#endif
+#ifdef COUNTS_BOUNCES
+#include "common/bounce_limits.glsl"
+#include <CameraPath>
+readonly buffer CameraPaths;
+#endif
 
 // An importon, by its number: its members are read where they are asked for, since processors have no registers for
 // all of them. Where reading them each time costs more (gl/buffers/texel_buffers.py), a copy.
@@ -33,12 +41,12 @@ float shading_correction(float cosine, float geometric_cosine) {
 }
 
 // BSDF times path throughput of an importon for a photon from wi, in front or behind; geometric_cosine: by which
-// the photon arrived; diffuse: what of it is diffuse.
-vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, out vec3 diffuse) {
+// the photon arrived; parts: whether the diffuse part and the lobe may scatter it; diffuse: what of it is diffuse.
+vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, bvec2 parts, out vec3 diffuse) {
     vec3 normal = unpack_unit_vector(ITS.diffuse_normal);
     float cosine = dot(normal, wi);
     vec3 value = vec3(0.0);
-    if ((cosine > 0.0) == front) {
+    if ((cosine > 0.0) == front && parts.x) {
         value = (front ? ITS.diffuse : ITS.translucent)
                 * rough_diffuse_factor(ITS.diffuse_roughness, normal, ITS.direction, wi);
         value *= shading_correction(cosine, geometric_cosine);
@@ -46,7 +54,7 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, ou
     }
     diffuse = value;
     uint kind = unpack_kind(ITS.lobe_kind);
-    if (kind != LOBE_NONE) {
+    if (kind != LOBE_NONE && parts.y) {
         normal = unpack_unit_vector(ITS.lobe_normal);
         cosine = dot(normal, wi);
         MicrofacetLobe lobe =
@@ -72,7 +80,7 @@ float caustic_mis_weight(uint photon_number, uint importon_history, float radius
     float radiance = photon_origins[photon_path_of(photons[photon_number].path)].radiance;
     uint bounces = bounces_of(arrived_depth(importon_history) + photons[photon_number].depth);
     bool ray_arrives = radiance > 0.0 && bounces <= iteration.camera_bounces
-                       && medium_count(photons[photon_number].medium_vertices) == 0u;
+                       && medium_count(photons[photon_number].bounce_counts) == 0u;
     return ray_arrives ? photon_power_heuristic(radiance, iteration.photon_flux, radius) : 1.0;
 }
 
@@ -87,13 +95,38 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
 // has passed more transparent surfaces.
 bool exceeds_depth(uint importon_history, uint photon_number) {
 #ifdef MEDIA
-    if (!within_volume_bounces(photons[photon_number].medium_vertices, photons[photon_number].flags, 0u)) return true;
+    if (!within_volume_bounces(photons[photon_number].bounce_counts, photons[photon_number].flags, 0u)) return true;
 #endif
     uint depth = arrived_depth(importon_history) + (photons[photon_number].depth & DEPTH_MASK);
     uint most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u)
         most = min(most, photon_origins[photon_path_of(photons[photon_number].path)].max_bounces);
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
+}
+
+// The bounces by type of the path of an importon, by its number, as it came.
+uint arrived_counts(uint number) {
+#ifdef COUNTS_BOUNCES
+    return camera_paths[number].arrived_counts;
+#else
+    return 0u;
+#endif
+}
+
+// Whether the limits by type let a lobe of a type scatter a photon to a camera path with some counts, and the photon is
+// no caustic that is left out. The scattering is a bounce unless the photon comes from its light.
+bool may_scatter(uint counts, uint photon_number, uint scatter, bool transmitted) {
+#ifdef DROPS_CAUSTICS
+    bool is_caustic = (photons[photon_number].depth >> CAUSTIC_SHIFT & iteration.dropped_caustics) != 0u;
+    if (is_caustic && scatter == SCATTER_DIFFUSE) return false;
+#endif
+#ifdef COUNTS_BOUNCES
+    bool is_bounce = bounces_of(photons[photon_number].depth) > 0u;
+    uint own = is_bounce ? counted(0u, counted_scatter(scatter, transmitted)) : 0u;
+    return !exceed_limits(counts_of(counts) + counts_of(photons[photon_number].bounce_counts) + counts_of(own));
+#else
+    return true;
+#endif
 }
 
 // What global photons count for: the disk's area over that of the surface in it (camera_paths/coverage/probe.comp).
@@ -108,11 +141,11 @@ struct Estimate {
 
 // Eq. 1: what a photon adds to the radiance of an importon, with the kernel 2 (1 - x^2) / pi, whose
 // integral over the unit disk is 1. False when it adds nothing. stands_for: how many photons the importon's disk holds
-// for each that counts within so much less of it.
-bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estimate estimate, out uint stands_for) {
+// for each that counts within so much less of it. counts: the arrived_counts of the importon.
+bool density_estimate(IMPORTON, uint counts, uint photon_number, out Estimate estimate, out uint stands_for) {
     uint flags = photons[photon_number].flags;
     vec3 offset = photons[photon_number].position - ITS.position;
-    float radius = photon_radius(flags, ITS.minimum_radius, ITS.radius, wide_radius);
+    float radius = photon_radius(flags, ITS.minimum_radius, ITS.radius, iteration.wide_radius);
     float radius2 = radius * radius;
     if (!(ITS.radius > 0.0) || !within_reach(ITS.gathers, offset, radius, flags)) return false;
     float disks = ITS.radius * ITS.radius / radius2;
@@ -134,8 +167,11 @@ bool density_estimate(IMPORTON, uint photon_number, float wide_radius, out Estim
         return false;
     float kernel = 2.0 * (1.0 - dot(offset, offset) / radius2) / (PI * radius2);
     estimate.front = alignment > 0.0;
-    vec3 radiance =
-        evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)), estimate.diffuse);
+    bool behind = !estimate.front;
+    bvec2 parts = bvec2(may_scatter(counts, photon_number, SCATTER_DIFFUSE, behind),
+                        may_scatter(counts, photon_number, lobe_scatter(kind, behind), behind));
+    vec3 radiance = evaluate_importon(importon, direction, estimate.front, abs(dot(photon_normal, direction)), parts,
+                                      estimate.diffuse);
     vec3 flux = photons[photon_number].flux;
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) kernel *= photon_factor(ITS.gathers);
     radiance = radiance * flux * kernel;

@@ -10,7 +10,8 @@
 uint photon_path_of(uint word) { return word & ((1u << PHOTON_SEGMENT_SHIFT) - 1u); }
 
 // The number of the vertices of a photon path in media.
-uint medium_count(uint medium_vertices) { return medium_vertices & (HIDDEN_FROM_MEDIA - 1u); }
+const uint MOST_MEDIUM_VERTICES = 31u;
+uint medium_count(uint bounce_counts) { return (bounce_counts >> MEDIUM_COUNT_SHIFT) & MOST_MEDIUM_VERTICES; }
 
 #include "common/disk_radius.glsl"
 #include <PhotonFootprints>

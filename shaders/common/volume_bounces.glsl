@@ -3,11 +3,18 @@
 // direct light only. Light that specular surfaces alone have sent there counts as direct. The includer includes
 // common/iteration.glsl and common/photon.glsl before.
 
+// The counts behind one more vertex in a medium.
+uint medium_counted(uint bounce_counts) {
+    bool full = medium_count(bounce_counts) == MOST_MEDIUM_VERTICES;
+    return full ? bounce_counts : bounce_counts + (1u << MEDIUM_COUNT_SHIFT);
+}
+
 // Whether a photon may count at an importon; own_vertices: of the importon, 1 in a medium and 0 on a surface.
-bool within_volume_bounces(uint medium_vertices, uint photon_flags, uint own_vertices) {
-    uint before = medium_count(medium_vertices), count = before + own_vertices;
+bool within_volume_bounces(uint bounce_counts, uint photon_flags, uint own_vertices) {
+    if (iteration.volume_bounces >= MOST_MEDIUM_VERTICES) return true;
+    uint before = medium_count(bounce_counts), count = before + own_vertices;
     if (count <= iteration.volume_bounces) return true;
     if (count > iteration.volume_bounces + 1u) return false;
-    if (before > 0u) return (medium_vertices & FIRST_MEDIUM_LIT) != 0u;
+    if (before > 0u) return (bounce_counts & FIRST_MEDIUM_LIT) != 0u;
     return (photon_flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
 }

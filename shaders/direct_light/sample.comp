@@ -6,6 +6,7 @@
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
 // lint: PORTALS=1
+// lint: COUNTS_BOUNCES=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
@@ -34,6 +35,7 @@ readonly buffer RadiusFactors;
 #include "camera_paths/importons/radius.glsl"
 writeonly buffer LightSplits;
 writeonly buffer ShadowMedia;
+#include "camera_paths/last_vertex.glsl"
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
 struct Parts {
@@ -253,8 +255,8 @@ void main() {
     Ray ray = rays[index];
     Closure closure = closures[index];
     CameraPath path = camera_paths[index];
-    uint flags = path.flags, bounces = bounces_of(path.depth);
-    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || bounces > iteration.camera_bounces) return;
+    uint flags = path.flags;
+    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || is_last_vertex(path)) return;
     if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
     bool gathered = is_final_gather(path), gathers = can_gather(path, closure);
     vec3 throughput = path.throughput * segment_transmittance(flags, ray.origin, ray.direction, closure.distance);

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: CLAMPS_LIGHT=1
 // UpdatePPMParams: the iteration's estimate enters the running mean of each pixel.
 
 layout(local_size_x = 64) in;
@@ -9,6 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 uniform Parameters { FilmParameters parameters; };
 #include "density_estimation/splat_sums/read.glsl"
+#include "common/clamping.glsl"
 #include "common/luminance.glsl"
 readonly buffer Radiances;
 buffer Film;
@@ -17,7 +20,8 @@ buffer PhotonLight;
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
-    vec4 radiance = radiances[index], photons = vec4(read_sum(index, false) * parameters.quantum, 0.0);
+    vec4 radiance = radiances[index],
+         photons = vec4(clamped_light(read_sum(index, false) * parameters.quantum, 1u), 0.0);
     vec4 estimate = radiance + photons;
     uint pixel = parameters.first_pixel + index;
     vec4 mean = iteration.number_in_film == 1u ? vec4(0.0) : film[pixel];

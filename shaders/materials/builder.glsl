@@ -5,6 +5,7 @@
 // position, triangle, flags, material, distance, geometric_normal, shading_normal. All normals are on the viewer's
 // side; so are those that nodes get, unless a normal map turns them away.
 
+#include <CausticKinds>
 #include "common/bsdf/closure.glsl"
 
 struct ClosureBuilder {
@@ -16,6 +17,8 @@ struct ClosureBuilder {
     float u_choice;       // a random number in [0, 1), renewed by each choice
     bool seen_by_camera;  // by its ray, at most through what is transparent
     int lobes;
+    uint dropped_caustics;  // CausticKind of the lobes that the closure lacks, since a diffuse surface sees it
+    bool is_bare;           // whether layers that reflect take no light from those below
 };
 
 // The only one that another may take the place of.
@@ -43,7 +46,7 @@ void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
     ClosureBuilder builder =
-        ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice, false, 0);
+        ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice, false, 0, 0u, false);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
@@ -130,9 +133,24 @@ void scale_lobe(inout MicrofacetLobe lobe, float factor) {
     if (passes_by_f0(lobe.kind)) lobe.f0 *= factor;
 }
 
+// What is left of a lobe without some kinds of caustics.
+MicrofacetLobe without_caustics(MicrofacetLobe lobe, uint dropped) {
+    bool reflects = (dropped & CAUSTIC_REFLECTED) == 0u, refracts = (dropped & CAUSTIC_REFRACTED) == 0u;
+    bool is_glass = passes_by_f0(lobe.kind), passes = lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET;
+    bool is_caustic = lobe_has_facets(lobe.kind) || lobe.kind == LOBE_GLOSSY_TOON;
+    if (is_caustic && (is_glass ? !reflects && !refracts : passes ? !refracts : !reflects)) lobe.kind = LOBE_NONE;
+    if (is_glass && !reflects) lobe.weight = vec3(0.0);
+    if (is_glass && !refracts) lobe.f0 = vec3(0.0);
+    return lobe;
+}
+
 // A closure holds three lobes; of the third and any further one, one is chosen by its albedo and
 // stands for both, which leaves the mean as it is.
 void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
+    if (builder.dropped_caustics != 0u) {
+        lobe = without_caustics(lobe, builder.dropped_caustics);
+        if (lobe.kind == LOBE_NONE) return;
+    }
     float brightness = largest(lobe_albedo(lobe, lobe_cosine(lobe, builder.viewer)));
     if (brightness <= 0.0 && largest(lobe.weight) <= 0.0) return;
     if (builder.lobes < CLOSURE_LOBES) {

@@ -42,7 +42,7 @@ MicrofacetLobe coat_lobe(ClosureBuilder builder, Principled p, inout vec3 weight
         lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior);
         float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine),
                            white_albedo(p.coat_roughness, at.cosine), f0);
-        weight = beneath(weight, vec3(p.coat * albedo));
+        if (!builder.is_bare) weight = beneath(weight, vec3(p.coat * albedo));
     }
     // Absorbed along the refracted way through the coat, which is of length 1 at normal incidence.
     float inside = sqrt(max(1.0 - (1.0 - at.cosine * at.cosine) / (ior * ior), 1e-6));
@@ -175,7 +175,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
     LAYER_IS_DONE(glass)
     LAYER_IS_DONE(sheet)
     bool reaches_base = !(largest(weight) <= 0.0);
-    if (reaches_base) base = base_lobe(p, at, whites, f0, ior, films.base, weight);
+    vec3 below = weight;
+    if (reaches_base) base = base_lobe(p, at, whites, f0, ior, films.base, below);
     LAYER_IS_DONE(base)
 #ifdef READS_TEXELS
     int layers = node_weight > 0.0 ? 6 : 0;
@@ -184,5 +185,5 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         if (lobe.kind != LOBE_NONE) add_lobe(builder, lobe);
     }
 #endif
-    if (reaches_base) add_base(builder, p, ior, weight);
+    if (reaches_base) add_base(builder, p, ior, builder.is_bare ? weight : below);
 }

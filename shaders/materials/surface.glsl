@@ -2,6 +2,7 @@
 // What nodes may ask about the place that is shaded.
 
 #include <ShadingInstance>
+#include "common/bounce_counts.glsl"
 #include "common/ray_kinds.glsl"
 readonly buffer Triangles;
 readonly buffer Attributes;
@@ -26,6 +27,7 @@ struct Surface {
     float ray_length;  // from the camera or the last event that was not straight through
     uint ray_depth;
     uint transparent_depth;
+    uint bounce_counts;  // of the path, by type
 };
 
 void triangle_points(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {

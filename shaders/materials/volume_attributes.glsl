@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Attributes of a volume, which are grids of voxels (rppm_addon/materials/media/volume_attributes.py), in place of those of
-// meshes in materials/surface.glsl. The includer defines VOLUME_ATTRIBUTES and includes that file before.
+// Attributes of a volume, which are grids of voxels (rppm_addon/materials/media/volume_attributes.py), in place of
+// those of meshes in materials/surface.glsl. The includer defines VOLUME_ATTRIBUTES and includes that file before.
 
 #include <VolumeGridEntry>
 readonly buffer VolumeGrids { VolumeGridEntry volume_grids[]; };

@@ -10,8 +10,9 @@ struct PhotonVertex {
     uint index;  // of the path
     uint flags;  // of the path as it arrives
     uint depth;  // of the path as it arrives
-    vec3 flux;   // that arrives, W
-    vec3 wo;     // toward the origin of the ray
+    uint bounce_counts;
+    vec3 flux;  // that arrives, W
+    vec3 wo;    // toward the origin of the ray
     Closure closure;
     float remaining_distance;  // of the ray behind the surface
     bool has_differential;     // whether the footprint of the photon is known
@@ -20,7 +21,7 @@ struct PhotonVertex {
 PhotonVertex photon_vertex(uint index, PhotonPath path, Ray ray) {
     Closure closure = closures[index];
     vec3 flux = path.flux * segment_transmittance(path.flags, ray.origin, ray.direction, closure.distance);
-    return PhotonVertex(index, path.flags, path.depth, flux, -ray.direction, closure,
+    return PhotonVertex(index, path.flags, path.depth, path.bounce_counts, flux, -ray.direction, closure,
                         ray.maximum_distance - closure.distance, photon_differentials[index].known != 0u);
 }
 
@@ -43,13 +44,14 @@ void write_photon(uint index, Photon photon) {
 
 // The photon of a path that carries no flux any more.
 void write_ended_path(uint index, PhotonPath path, Ray ray) {
-    write_photon(index, Photon(vec3(0.0), 0u, path.flux, 0u, -ray.direction, 0.0, 0u, path.depth, 0u, 0u));
+    write_photon(index,
+                 Photon(vec3(0.0), 0u, path.flux, 0u, -ray.direction, 0.0, 0u, path.depth, path.bounce_counts, 0u));
 }
 
 void handle_escaped(uint index, PhotonPath path, Ray ray) {
     uint flags = PHOTON_ACTIVE | photon_flags(path.flags) | PHOTON_ESCAPED;
-    write_photon(index,
-                 Photon(vec3(0.0), flags, path.flux, 0u, -ray.direction, INFINITY_DISTANCE, 0u, path.depth, 0u, 0u));
+    write_photon(index, Photon(vec3(0.0), flags, path.flux, 0u, -ray.direction, INFINITY_DISTANCE, 0u, path.depth,
+                               path.bounce_counts, 0u));
     photon_paths[index].escaped = channel_sum(path.flux);
 }
 
@@ -75,6 +77,6 @@ void store_photon(PhotonVertex vertex) {
     if (stores_photons(vertex)) flags |= PHOTON_STORED;
     float distance = differential.before + closure.distance;
     write_photon(vertex.index, Photon(closure.position, flags, vertex.flux, closure.geometric_normal, vertex.wo,
-                                      distance, 0u, vertex.depth, photon_paths[vertex.index].medium_vertices, 0u));
+                                      distance, 0u, vertex.depth, vertex.bounce_counts, 0u));
     photon_differentials[vertex.index].before = distance;
 }

@@ -2,6 +2,7 @@
 // A sample of the BSDF at a vertex of a photon path. The includer includes photons/parts.glsl and
 // photons/photon_vertex.glsl before.
 
+#include "common/path_history.glsl"
 #include "common/random.glsl"
 
 struct BsdfSample {
@@ -11,8 +12,8 @@ struct BsdfSample {
     bool transmitted;
     uint flags;           // that the path gets
     uint exclusion_flag;  // of direct photons from lights that do not take part in such scattering
-    bool diffuse;
-    uint part;  // of the closure
+    uint scatter;         // Scatter of the part
+    uint part;            // of the closure
     float ior;
 };
 
@@ -74,7 +75,7 @@ BsdfSample sample_selected_lobe(PhotonVertex vertex, int selected, float fractio
     BsdfSample bsdf =
         BsdfSample(sampled.direction, sampled.weight * (shadowing * sum / max(fraction, 1e-20)), lobe_normal(lobe),
                    sampled.transmitted, flags, sampled.transmitted ? PHOTON_NOT_TRANSMITTED : PHOTON_NOT_GLOSSY,
-                   lobe_is_diffuse(lobe.kind), lobe_part(lobe, sampled.transmitted), lobe.ior);
+                   lobe_scatter(lobe.kind, sampled.transmitted), lobe_part(lobe, sampled.transmitted), lobe.ior);
     if (bsdf.part == PART_STRAND) bsdf.normal = unpack_unit_vector(closure.geometric_normal);
     return bsdf;
 }
@@ -93,7 +94,8 @@ BsdfSample sample_diffuse(PhotonVertex vertex, bool reflected, vec2 disk) {
     uint part = reflected ? PART_DIFFUSE : PART_TRANSLUCENT;
     vec3 direction = cosine_hemisphere(geometric, disk);
     return BsdfSample(direction, correction * diffuse_bsdf(closure, part, normal, direction, vertex.wo), geometric,
-                      !reflected, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, true, part, 1.0);
+                      !reflected, PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT, PHOTON_NOT_DIFFUSE, SCATTER_DIFFUSE,
+                      part, 1.0);
 }
 
 // One part of the closure is selected by its fraction of the flux; the rest of the probability is absorption. Lobes
@@ -120,8 +122,8 @@ BsdfSample sample_bsdf(PhotonVertex vertex, inout RandomSequence random) {
         int selected = u < lobes.x ? 0 : (u < lobes.x + lobes.y ? 1 : 2);
         bsdf = sample_selected_lobe(vertex, selected, lobes[selected], sum, disk, uc);
     } else if (is_transparent)
-        bsdf = BsdfSample(-vertex.wo, vertex.closure.transparent * (sum / transparent), vertex.wo, true, 0u, 0u, false,
-                          PART_TRANSPARENT, 1.0);
+        bsdf = BsdfSample(-vertex.wo, vertex.closure.transparent * (sum / transparent), vertex.wo, true, 0u, 0u,
+                          SCATTER_NONE, PART_TRANSPARENT, 1.0);
     else {
         bsdf = sample_diffuse(vertex, reflected, disk);
         bsdf.weight *= sum / (reflected ? diffuse : translucent);

@@ -71,12 +71,33 @@ void scatter_differential(PhotonVertex vertex, BsdfSample bsdf) {
 uint departing_flags(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
     uint flags = vertex.flags | bsdf.flags;
     if (!straight)
-        flags = scattered_flags(flags, bsdf.diffuse)
+        flags = scattered_flags(flags, bsdf.scatter == SCATTER_DIFFUSE)
                 & ~(PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED | PHOTON_CASTS_SHADOWS);
     if (!straight || (vertex.closure.flags & CLOSURE_SHADOWLESS) == 0u) flags &= ~PHOTON_DIRECT;
     if (bsdf.transmitted) flags = cross_surface(flags, vertex.closure.material, closure_backfacing(vertex.closure));
     return flags;
 }
+
+#ifdef COUNTS_BOUNCES
+#include "common/bounce_limits.glsl"
+
+// The counts of a path behind a vertex. The surface that light comes to first does not count: a camera path ends there.
+uint departing_counts(PhotonVertex vertex, BsdfSample bsdf) {
+    if (bsdf.scatter == SCATTER_NONE || bounces_of(vertex.depth) == 0u) return vertex.bounce_counts;
+    return counted(vertex.bounce_counts, counted_scatter(bsdf.scatter, bsdf.transmitted));
+}
+#endif
+
+#ifdef DROPS_CAUSTICS
+#include <CausticKinds>
+
+// The kind of caustic that a sample makes of a photon where it comes to a diffuse surface next. Fibers make none.
+uint caustic_kind(BsdfSample bsdf) {
+    if (bsdf.part == PART_HAIR || bsdf.part == PART_STRAND) return 0u;
+    if (bsdf.scatter == SCATTER_TRANSMISSION) return CAUSTIC_REFRACTED;
+    return bsdf.scatter == SCATTER_GLOSSY ? CAUSTIC_REFLECTED : 0u;
+}
+#endif
 
 // Writes the next ray and the state of the path.
 void spawn_ray(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
@@ -85,6 +106,10 @@ void spawn_ray(PhotonVertex vertex, BsdfSample bsdf, bool straight) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     if (bsdf.part != PART_TRANSPARENT) photon_paths[index].depth += ONE_BOUNCE;
     else if (counts_as_transparent(closure)) photon_paths[index].depth += ONE_TRANSPARENT;
+#ifdef DROPS_CAUSTICS
+    if (bsdf.part != PART_TRANSPARENT)
+        photon_paths[index].depth = (photon_paths[index].depth & DEPTH_MASK) | caustic_kind(bsdf) << CAUSTIC_SHIFT;
+#endif
     if (vertex.has_differential) scatter_differential(vertex, bsdf);
     if (!straight) photon_differentials[index].before = 0.0;
     float offset = closures[index].ray_offset;
@@ -106,6 +131,15 @@ void sample_next_ray(PhotonVertex vertex) {
     bool leaves = bsdf.transmitted ? side < 0.0 : side > 0.0;
     if (!(largest(bsdf.weight) > 0.0 && leaves)) return;
     bool straight = bsdf.direction == -vertex.wo;
+#ifdef DROPS_CAUSTICS
+    bool is_caustic = (vertex.depth >> CAUSTIC_SHIFT & iteration.dropped_caustics) != 0u;
+    if (is_caustic && bsdf.scatter == SCATTER_DIFFUSE) return;
+#endif
+#ifdef COUNTS_BOUNCES
+    uint counts = departing_counts(vertex, bsdf);
+    if (exceed_limits(counts_of(counts))) return;
+    photon_paths[vertex.index].bounce_counts = counts;
+#endif
     if (!straight) bsdf.weight *= adjoint_correction(vertex.wo, bsdf.direction, geometric, bsdf.normal);
     bool is_excluded = ((vertex.flags | bsdf.flags) & bsdf.exclusion_flag) != 0u;
     photon_paths[vertex.index].flux = is_excluded ? vec3(0.0) : vertex.flux * bsdf.weight;

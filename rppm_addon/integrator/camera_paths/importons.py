@@ -11,6 +11,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import PathList
 from ..common.band import Band
 from ..common.iteration import Iteration
+from ..common.records import bounce_counts  # noqa: F401  declares constants
 from ..common.records.camera_paths import CAMERA_PATH
 from ..common.records.closures import CLOSURE
 from ..common.records.importons import IMPORTON
@@ -102,6 +103,7 @@ class Importons(Stage):
         """Return the segment's importons, to take photons; ``raster``: where its hits lie on the camera's raster."""
         return SplatTargets(
             self.importons.buffer,
+            self.paths.buffer,
             self.active,
             gathers=segment == 0 and context.gathers,
             final_gather=segment > 0 and context.gathers,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from ...materials.traits.ashikhmin_shirley import has_ashikhmin
 from ...materials.traits.hair import has_hair
 from ...materials.traits.interiors import Interior
+from ...materials.traits.path_depths import asks_for_bounces_by_type
 from ...scene.scene import Scene
 from .viewport_demands import ViewportDemands
 
@@ -24,6 +25,12 @@ class ShaderFeatures:
     """Whether volumes fill the world or the inside of surfaces."""
     has_heterogeneous_media: bool = False
     """Whether any of these varies from place to place, or from object to object."""
+    counts_bounces: bool = False
+    """Whether bounces are counted by type."""
+    drops_caustics: bool = False
+    """Whether any kind of caustics is left out."""
+    clamps_light: bool = False
+    """Whether light that paths bring has a limit."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -36,6 +43,10 @@ class ShaderFeatures:
             any(light.is_portal for light in scene.lights),
             any(volume is not None for volume, _ in volumes),
             any(Interior.of(volume, reads_grids).varies for volume, reads_grids in volumes),
+            scene.settings.limits_bounces_by_type
+            or any(asks_for_bounces_by_type(material.graph) for material in scene.materials),
+            scene.settings.dropped_caustics != 0,
+            scene.settings.sample_clamp_direct > 0.0 or scene.settings.sample_clamp_indirect > 0.0,
         )
 
     @property
@@ -47,5 +58,8 @@ class ShaderFeatures:
             "PORTALS": self.has_portals,
             "MEDIA": self.has_media,
             "HETEROGENEOUS_MEDIA": self.has_heterogeneous_media,
+            "COUNTS_BOUNCES": self.counts_bounces,
+            "DROPS_CAUSTICS": self.drops_caustics,
+            "CLAMPS_LIGHT": self.clamps_light,
         }
         return {name: 1 for name, has in macros.items() if has}

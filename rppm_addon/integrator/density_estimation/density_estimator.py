@@ -150,5 +150,6 @@ class DensityEstimator(Stage):
 
     def _get(self, route: DensityEstimation) -> Splatting | PhotonGrid:
         if route not in self._routes:
-            self._routes[route] = self.own(ROUTES[route](self._context, self._library, self._sizes))
+            with self._library.defining(self._sizes.features.defines):
+                self._routes[route] = self.own(ROUTES[route](self._context, self._library, self._sizes))
         return self._routes[route]

@@ -133,7 +133,7 @@ class PhotonGrid(BufferSet):
                     **photons.blocks,
                     **sums.blocks,
                     **self.blocks,
-                    "Importons": importons.importons,
+                    **importons.blocks,
                     "Buckets": self._grid.buffer,
                     "Visits": visits.buffer,
                     "UnfinishedVisits": unfinished.buffer,

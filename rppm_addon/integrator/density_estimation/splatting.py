@@ -139,7 +139,7 @@ class Splatting(BufferSet):
             self._direct_program,
             self._direct_view,
             (raster.width, raster.rows),
-            {**photons.blocks, "Importons": importons.importons, **sums.blocks},
+            {**photons.blocks, **importons.blocks, **sums.blocks},
             sums.parameters,
         )
 
@@ -166,7 +166,7 @@ class Splatting(BufferSet):
             {**photons.blocks, **self.blocks},
             {**cube, "count": photons.count},
         )
-        splats = {**photons.blocks, "Importons": importons.importons, **sums.blocks}
+        splats = {**photons.blocks, **importons.blocks, **sums.blocks}
         self._draw(
             self._indirect_program,
             self._cube_view,

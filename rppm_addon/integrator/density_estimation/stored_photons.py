@@ -131,6 +131,8 @@ class SplatTargets:
     """The importons of a segment of a band's camera paths, one a pixel."""
 
     importons: moderngl.Buffer
+    paths: moderngl.Buffer
+    """CAMERA_PATH of each importon."""
     active: ActivePaths
     """The paths that came to this segment: what others have left in ``importons`` is of segments before."""
     gathers: bool
@@ -141,6 +143,11 @@ class SplatTargets:
     """Place of first hits on the camera's raster."""
     center: np.ndarray
     """Center of the splat cubemap, which serves importons without a raster, (3,) meters; it changes no sum."""
+
+    @property
+    def blocks(self) -> dict[str, Bindable]:
+        """Storage blocks of programs that estimate densities."""
+        return {"Importons": self.importons, "CameraPaths": self.paths}
 
     def narrow_radius(self, photons: StoredPhotons) -> float:
         """Return the upper limit of the narrow radii of these importons, meters."""

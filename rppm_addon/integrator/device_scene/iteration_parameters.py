@@ -23,6 +23,10 @@ _SETTINGS = {
     "photon_bounces": "uint",
     "volume_bounces": "uint",
     "film_transparent": "uint",
+    "bounce_limits": "uvec4",
+    "dropped_caustics": "uint",
+    "clamp_direct": "float",
+    "clamp_indirect": "float",
 }
 """Members that are attributes of RenderSettings, by name and type."""
 

@@ -147,7 +147,7 @@ class DirectLight(Stage):
             context.acceleration.occluded(
                 self._rays.buffer, self.triangles.buffer, self.visibility.buffer, active, linking
             )
-        active.run(self._add, {**context.blocks, **self.blocks})
+        active.run(self._add, {**context.blocks, **importons.blocks, **self.blocks})
 
     def _pass_surfaces(
         self,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Caustic casters: the objects that make caustics, at which photons are aimed."""
+"""Caustic casters and media: the objects that make caustics or scatter light inside, at which photons are aimed."""
 
 from typing import Any, cast
 
@@ -7,6 +7,7 @@ import numpy as np
 
 from ...materials.compiler.graph_constants import LUMINANCE
 from ...materials.nodes import KINDS
+from ...materials.traits.interiors import Interior
 from ...scene.materials import Material
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from ...scene.scene import Scene
@@ -66,12 +67,14 @@ def _visible_shaders(graph: NodeGraph) -> list[ShaderNode]:
 
 def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
     """(n, 4) float32 bounding spheres, center and radius in meters, of up to 64 objects with sharp
-    specular lobes. Objects half as large as the scene are none: photons meet them anyway."""
+    specular lobes or media that scatter. Objects half as large as the scene are none: photons meet them anyway."""
 
-    def sharp(material: Material) -> bool:
-        return any(_makes_caustics(node) for node in _visible_shaders(material.graph))
+    def is_aimed_at(material: Material) -> bool:
+        return bool(Interior.of(material.interior).scattering) or any(
+            _makes_caustics(node) for node in _visible_shaders(material.graph)
+        )
 
-    casters = {index for index, material in enumerate(scene.materials) if sharp(material)}
+    casters = {index for index, material in enumerate(scene.materials) if is_aimed_at(material)}
     spheres = []
     for placement, (low, high) in zip(geometry.placements, geometry.boxes, strict=True) if casters else ():
         if casters.isdisjoint(placement.instance.materials):

@@ -47,6 +47,7 @@ Record(
     camera_flags="uint",
     camera_depth="uint",
     photon_depth="uint",
+    camera_bounce_counts="uint",
     camera_straight_length="uint",
     photon_stride="uint",
     photon_flags="uint",
@@ -57,6 +58,7 @@ Record(
     ray_stride="uint",
     ray_level="uint",
     ray_levels="uint",
+    dropped_caustics="uint",
 )
 
 
@@ -170,11 +172,13 @@ class Resolve(BufferSet):
             "pixel_size": camera.pixel_size,
             "world_origin": scene.world_offset,
             "seed": scene.settings.seed,
+            "dropped_caustics": scene.settings.dropped_caustics,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
             "camera_flags": CAMERA_PATH.offset("flags") // 4,
             "camera_straight_length": CAMERA_PATH.offset("straight_length") // 4,
             "camera_depth": CAMERA_PATH.offset("depth") // 4,
+            "camera_bounce_counts": CAMERA_PATH.offset("bounce_counts") // 4,
             "photon_stride": PHOTON_PATH.size // 4,
             "photon_flags": PHOTON_PATH.offset("flags") // 4,
             "photon_depth": PHOTON_PATH.offset("depth") // 4,

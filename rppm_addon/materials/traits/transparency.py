@@ -20,11 +20,26 @@ def asks_for_shadow_rays(graph: NodeGraph) -> bool:
     return passes_shadow_rays(graph) and _distinguishes_shadow_rays(graph)
 
 
+def stops_shadow_rays_as_glass(graph: NodeGraph) -> bool:
+    """True where glass that lets shadow rays pass stops them all the same (passes_shadow_rays)."""
+    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
+    return _distinguishes_shadow_rays(graph) and any(map(_is_transparent, nodes)) and any(map(_refracts, nodes))
+
+
+def passes_by_ray_length(graph: NodeGraph) -> bool:
+    """True where what passes a surface may depend on the length of the ray that comes to it."""
+    return passes_shadow_rays(graph) and _reads_light_path(graph, "ray_length")
+
+
 def _distinguishes_shadow_rays(graph: NodeGraph) -> bool:
+    return _reads_light_path(graph, "is_shadow_ray")
+
+
+def _reads_light_path(graph: NodeGraph, output: str) -> bool:
     links = (value for index in reachable(graph, graph.surface) for value in graph.nodes[index].inputs.values())
     return any(
         isinstance(link, Link)
-        and link.output == "is_shadow_ray"
+        and link.output == output
         and 0 <= link.node < len(graph.nodes)
         and graph.nodes[link.node].kind == "light_path"
         for link in links

@@ -4,15 +4,17 @@
 from .acceleration import CUBEMAP_COSTS, AccelerationStructure, DensityEstimation, FirstCameraHits, FirstPhotonHits
 from .denoising import DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
 from .film import PixelFilter
-from .light_paths import MOST_SEGMENTS, DirectLight
+from .light_paths import MOST_COUNTED_BOUNCES, MOST_SEGMENTS, CausticKind, DirectLight
 from .photons import MOST_PHOTONS
 from .render_settings import RenderSettings
 
 __all__ = [
     "CUBEMAP_COSTS",
+    "MOST_COUNTED_BOUNCES",
     "MOST_PHOTONS",
     "MOST_SEGMENTS",
     "AccelerationStructure",
+    "CausticKind",
     "DenoisingInputPasses",
     "DenoisingPrefilter",
     "DenoisingQuality",

@@ -2,6 +2,7 @@
 """Settings of light paths: how long they are, and how light is estimated at their vertices."""
 
 import enum
+import math
 from dataclasses import dataclass
 
 from .group import SettingGroup
@@ -10,9 +11,19 @@ from .setting_info import setting
 _MOST_BOUNCES = 1024
 MOST_SEGMENTS = 1024
 """Most rays of a path: as many as a photon's record can distinguish."""
+MOST_COUNTED_BOUNCES = 255
+"""Largest number of bounces of a type that paths count."""
+NO_BOUNCE_LIMIT = 0xFFFFFFFF
 _MOST_PASSED = 32
 """Most segments through surfaces that a path does not see, such as objects hidden from the camera; no limit counts
 them."""
+
+
+class CausticKind(enum.IntFlag):
+    """Kinds of caustics, by the lobe that sent the light to a diffuse surface; 0 is none."""
+
+    REFLECTED = 1
+    REFRACTED = 2
 
 
 class DirectLight(enum.Enum):
@@ -31,6 +42,33 @@ class LightPathSettings(SettingGroup):
         "Max Bounces",
         "Most bounces of light on its way from what it lights first to the camera, as Cycles counts them: those of "
         "photons, of the final gather and of camera rays together. 0 is direct light only",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    diffuse_bounces: int = setting(
+        _MOST_BOUNCES,
+        "Diffuse Bounces",
+        "Most times that light may be scattered by diffuse reflection on its way from what it lights first to the "
+        "camera, as Cycles counts them; from 255 on there is no limit",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    glossy_bounces: int = setting(
+        _MOST_BOUNCES,
+        "Glossy Bounces",
+        "Most times that light may be scattered by glossy reflection and mirrors on its way from what it lights first "
+        "to the camera, as Cycles counts them; from 255 on there is no limit",
+        minimum=0,
+        maximum=_MOST_BOUNCES,
+        soft_maximum=64,
+    )
+    transmission_bounces: int = setting(
+        _MOST_BOUNCES,
+        "Transmission Bounces",
+        "Most times that light may pass glass and translucent surfaces on its way from what it lights first to the "
+        "camera, as Cycles counts them; from 255 on there is no limit",
         minimum=0,
         maximum=_MOST_BOUNCES,
         soft_maximum=64,
@@ -54,6 +92,33 @@ class LightPathSettings(SettingGroup):
         soft_maximum=64,
     )
     """The name and the default are those of Cycles."""
+    sample_clamp_direct: float = setting(
+        0.0,
+        "Clamp Direct",
+        "Largest mean of red, green and blue of a sample of direct light, W/(m^2 sr), as in Cycles",
+        minimum=0.0,
+        zero="no limit",
+    )
+    sample_clamp_indirect: float = setting(
+        0.0,
+        "Clamp Indirect",
+        "Largest mean of red, green and blue of a sample of indirect light, W/(m^2 sr), as in Cycles; of photons and "
+        "the final gather it limits what a sample finds",
+        minimum=0.0,
+        zero="no limit",
+    )
+    caustics_reflective: bool = setting(
+        True,
+        "Reflective Caustics",
+        "Caustics by reflection: light that glossy surfaces and mirrors send to diffuse ones. Without, as in Cycles, "
+        "surfaces that diffuse ones see reflect nothing",
+    )
+    caustics_refractive: bool = setting(
+        True,
+        "Refractive Caustics",
+        "Caustics by refraction: light that glass sends to diffuse surfaces. Without, as in Cycles, glass that diffuse "
+        "surfaces see lets nothing through",
+    )
     camera_path_length: int = setting(
         1 + _MOST_BOUNCES,
         "Max Camera Bounces",
@@ -105,6 +170,38 @@ class LightPathSettings(SettingGroup):
         "Look for light from other surfaces along one ray from each point, and take only direct light and caustics "
         "from the photons there: fine noise in place of blotches, slower samples",
     )
+
+    @property
+    def bounce_limits(self) -> tuple[int, int, int, int]:
+        """Most bounces by type, in the order of Scatter; NO_BOUNCE_LIMIT where the limit of all is as strict or counts
+        do not reach it."""
+        limits = (self.diffuse_bounces, self.glossy_bounces, self.transmission_bounces)
+        first, second, third = (
+            limit if limit < min(self.max_bounces, MOST_COUNTED_BOUNCES) else NO_BOUNCE_LIMIT for limit in limits
+        )
+        return first, second, third, NO_BOUNCE_LIMIT
+
+    @property
+    def limits_bounces_by_type(self) -> bool:
+        """Whether a limit by type ends paths that the limit of all bounces does not."""
+        return any(limit != NO_BOUNCE_LIMIT for limit in self.bounce_limits)
+
+    @property
+    def clamp_direct(self) -> float:
+        """Largest mean of a contribution's channels, W/(m^2 sr), of direct light."""
+        return self.sample_clamp_direct or math.inf
+
+    @property
+    def clamp_indirect(self) -> float:
+        """Largest mean of a contribution's channels, W/(m^2 sr), of indirect light."""
+        return self.sample_clamp_indirect or math.inf
+
+    @property
+    def dropped_caustics(self) -> int:
+        """Kinds of caustics that are left out, as a CausticKind."""
+        return (0 if self.caustics_reflective else CausticKind.REFLECTED) | (
+            0 if self.caustics_refractive else CausticKind.REFRACTED
+        )
 
     @property
     def camera_bounces(self) -> int:

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: CLAMPS_LIGHT=1
 // A pixel reuses the rays of its neighbors' final gather, within a radius that shrinks as all radii do.
 //
 // Bekaert, Sbert and Halton, Accelerating Path Tracing by Re-Using Paths (2002): a neighbor's ray is weighted by the
@@ -17,6 +19,7 @@ layout(local_size_x = 64) in;
 #include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/geometry.glsl"
+#include "common/clamping.glsl"
 #include "common/random.glsl"
 uniform Parameters { ReuseParameters parameters; };
 readonly buffer FinalGatherOrigins;
@@ -101,5 +104,5 @@ void main() {
             sum += own * (kernel * own_rays * balance_weight(own_terms, other_terms, own_rays));
         }
     }
-    radiances[index].rgb += final_gather_origins[index].weight * sum / weights;
+    radiances[index].rgb += clamped_light(final_gather_origins[index].weight * sum / weights, 1u);
 }

@@ -2,10 +2,13 @@
 // Emission along the ray of a camera path: of media, light objects, surfaces and the environment. The includer
 // includes camera_paths/importons/path_vertex.glsl before.
 
+#include "common/clamping.glsl"
+
 // Radiance that arrives at the origin of a final gather counts by the throughput there.
 void add_radiance(PathSegment segment, vec4 radiance) {
     vec3 weight = is_final_gather(segment.path) ? final_gather_origins[segment.index].weight : vec3(1.0);
-    radiances[segment.index] += vec4(weight, 1.0) * radiance;
+    uint bounces = bounces_before_emission(bounces_of(segment.path.depth));
+    radiances[segment.index] += vec4(clamped_light(weight * radiance.rgb, bounces), radiance.a);
 }
 
 // Media along the ray weaken what is behind them, and emit light themselves. Neighboring pixels reuse that light where

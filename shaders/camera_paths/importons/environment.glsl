@@ -56,7 +56,7 @@ void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampli
         direct *= 1.0 - direct_photon_mis_weight(environment, sampling.nominal_pdf, path.photon_radius);
         bool is_reused = (path.flags & PATH_SECONDARY_GATHER) != 0u || sampling.is_reused;
         if (is_reused) final_gather_hits[index].radiance += direct;
-        else radiances[index].rgb += final_gather_origins[index].weight * direct;
+        else radiances[index].rgb += clamped_light(final_gather_origins[index].weight * direct, 0u);
         return;
     }
     float photon_weight = photon_power_heuristic(largest(environment), iteration.photon_flux, path.photon_radius);

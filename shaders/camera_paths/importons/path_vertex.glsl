@@ -7,6 +7,7 @@
 #include "common/low_discrepancy.glsl"
 #include "common/transparency.glsl"
 #include "camera_paths/importons/radius.glsl"
+#include "camera_paths/last_vertex.glsl"
 #include "camera_paths/importons/scatter_point.glsl"
 
 // The ray of a camera path, from the vertex that scattered it to its hit.
@@ -53,6 +54,9 @@ RaySamples ray_samples(uint index) {
 uint begin_segment(uint index) {
     uint history = parameters.segment == 0u ? 0u : departing_history(importons[index].history);
     importons[index].radius = 0.0;
+#ifdef COUNTS_BOUNCES
+    camera_paths[index].arrived_counts = camera_paths[index].bounce_counts;
+#endif
     rays[index].maximum_distance = 0.0;
     if (parameters.segment == 0u) {
         final_gather_origins[index].reuse_radius = NO_FINAL_GATHER;
@@ -78,8 +82,6 @@ SurfaceVertex surface_vertex(PathSegment segment, uint history) {
     PhotonRadii radii = photon_radii(index, path, segment.ray.direction, closure);
     return SurfaceVertex(index, path, segment.ray, history, closure, radii, can_gather(path, closure));
 }
-
-bool is_last_vertex(CameraPath path) { return bounces_of(path.depth) > iteration.camera_bounces; }
 
 // Behind its last bounce a path only passes transparent surfaces.
 LobeSelection select_lobes(SurfaceVertex vertex) {

@@ -13,6 +13,9 @@ void extend_path(inout SurfaceVertex vertex, BsdfSample bsdf) {
     path.flags = bsdf.flags;
     if (is_scattered) path.depth += ONE_BOUNCE;
     else if (counts_as_transparent(closure)) path.depth += ONE_TRANSPARENT;
+#ifdef COUNTS_BOUNCES
+    if (is_scattered) path.bounce_counts = counted(path.bounce_counts, counted_scatter(bsdf.scatter, bsdf.transmitted));
+#endif
     path.straight_length = is_scattered ? 0.0 : path.straight_length + closure.distance;
     path.scatter_pdf = bsdf.pdf;
     if (is_scattered && bsdf.pdf > 0.0) {

@@ -110,7 +110,7 @@ void main() {
         if (rejected(photons[number].path, visit.x)) continue;
         Estimate estimate;
         uint stands_for;
-        if (!density_estimate(IMPORTON_OF(importon, visit.x), number, iteration.wide_radius, estimate, stands_for))
+        if (!density_estimate(IMPORTON_OF(importon, visit.x), arrived_counts(visit.x), number, estimate, stands_for))
             continue;
         any = true;
         photons[number].depth = photons[number].depth | PHOTON_CONTRIBUTED;

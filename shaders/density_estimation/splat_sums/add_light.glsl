@@ -8,8 +8,8 @@ buffer LightSums;
 buffer GroupSums;
 
 // Whether a surface or a medium has scattered a photon on its way from the light.
-bool is_indirect(uint photon_flags, uint medium_vertices) {
-    return (photon_flags & (PHOTON_SCATTERED_BY_LOBE | PHOTON_INDIRECT)) != 0u || medium_count(medium_vertices) > 0u;
+bool is_indirect(uint photon_flags, uint bounce_counts) {
+    return (photon_flags & (PHOTON_SCATTERED_BY_LOBE | PHOTON_INDIRECT)) != 0u || medium_count(bounce_counts) > 0u;
 }
 
 void add_light_word(uint place, float quanta) {

@@ -16,7 +16,7 @@ void meet(uint importon, uint photon) {
     if (!within_reach(importons[importon].gathers, offset, radius, flags)) return;
     Estimate estimate;
     uint stands_for;
-    if (!density_estimate(IMPORTON_OF(importons[importon], importon), photon, iteration.wide_radius, estimate,
+    if (!density_estimate(IMPORTON_OF(importons[importon], importon), arrived_counts(importon), photon, estimate,
                           stands_for))
         return;
     add_splat(importon, photon, estimate.radiance, stands_for);

@@ -165,9 +165,9 @@ void node_light_path(Surface surface, out float is_camera_ray, out float is_shad
     ray_length = surface.ray_length;
     ray_depth = float(surface.ray_depth);
     transparent_depth = float(surface.transparent_depth);
-    diffuse_depth = is_diffuse_ray > 0.0 ? 1.0 : 0.0;
-    glossy_depth = is_glossy_ray * ray_depth;
-    transmission_depth = is_transmission_ray * ray_depth;
+    diffuse_depth = float(count_of(surface.bounce_counts, SCATTER_DIFFUSE));
+    glossy_depth = float(count_of(surface.bounce_counts, SCATTER_GLOSSY));
+    transmission_depth = float(count_of(surface.bounce_counts, SCATTER_TRANSMISSION));
 }
 
 void node_wireframe(Surface surface, int pixel_size, float size, out float fac) {

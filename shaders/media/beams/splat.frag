@@ -32,7 +32,7 @@ flat in uint beam_number;
 const float LEAST_SINE = 1e-4;
 
 bool exceeds_depth(uint camera_depth, PhotonBeam beam) {
-    if (!within_volume_bounces(beam.medium_vertices, beam.flags, 1u)) return true;
+    if (!within_volume_bounces(beam.bounce_counts, beam.flags, 1u)) return true;
     uint depth = camera_depth + (beam.depth & DEPTH_MASK), most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u) most = min(most, beam.max_bounces);
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
@@ -42,6 +42,13 @@ bool exceeds_depth(uint camera_depth, PhotonBeam beam) {
 float radius_at(float distance) {
     float pixel = sqrt(camera.pixel_area) * (camera.projection == PROJECTION_ORTHOGRAPHIC ? 1.0 : distance);
     return max(parameters.radius, parameters.radius_pixels * pixel);
+}
+
+// Factor of a beam's flux at a distance from its origin: the transmittance over the probability of coming there, by
+// which the beam is as long as it is. It is 1 in gray media.
+vec3 flux_factor(uint flags, float way) {
+    vec3 passed = exp(-even_extinction(flags) * way);
+    return passed / max(dot(passed, vec3(1.0 / 3.0)), 1e-30);
 }
 
 void main() {
@@ -61,6 +68,6 @@ void main() {
     float kernel = 0.75 * (1.0 - x2) / radius;
     vec3 radiance = target.throughput * segment_transmittance(target.flags, target.origin, target.direction, distance)
                     * scattered_phase(target.flags, PlaceOnRay(target.origin, target.direction, distance), -cosine)
-                    * beam.flux * (kernel * inversesqrt(sine2));
+                    * beam.flux * flux_factor(target.flags, way) * (kernel * inversesqrt(sine2));
     add_beam(pixel, beam, radiance);
 }

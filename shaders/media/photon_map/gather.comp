@@ -61,7 +61,7 @@ struct GatherPoint {
 };
 
 bool exceeds_depth(uint camera_depth, uint photon) {
-    if (!within_volume_bounces(photons[photon].medium_vertices, photons[photon].flags, 1u)) return true;
+    if (!within_volume_bounces(photons[photon].bounce_counts, photons[photon].flags, 1u)) return true;
     uint depth = camera_depth + (photons[photon].depth & DEPTH_MASK), most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u)
         most = min(most, photon_origins[photon_path_of(photons[photon].path)].max_bounces);
@@ -97,7 +97,7 @@ void add_light(uint pixel, uint photon, vec3 radiance) {
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
         add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
     uint flags = photons[photon].flags, first = first_scatter(history);
-    bool indirect = is_indirect(flags, photons[photon].medium_vertices);
+    bool indirect = is_indirect(flags, photons[photon].bounce_counts);
     if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
         add_to_light_sum(pixel, first == SCATTER_NONE ? volume_sum(indirect) : scattered_sum(first, true), radiance);
     bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;

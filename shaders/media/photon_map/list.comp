@@ -16,7 +16,7 @@ buffer MediumPhotons;
 
 void main() {
     uint index = invocation_index();
-    if (index >= min(parameters.count, photon_end) || (photons[index].medium_vertices & PHOTON_IN_MEDIUM) == 0u) return;
+    if (index >= min(parameters.count, photon_end) || (photons[index].bounce_counts & PHOTON_IN_MEDIUM) == 0u) return;
     if (iteration.next_event != 0u && (photons[index].flags & PHOTON_DIRECT) != 0u) return;
     medium_photons[atomicAdd(medium_photon_count, 1u)] = index;
 }

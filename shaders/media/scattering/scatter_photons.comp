@@ -43,14 +43,14 @@ uint stored_flags(uint path_flags) {
 
 // Whether media scatter no light of a path before something else has.
 bool is_hidden(PhotonPath path) {
-    return (path.medium_vertices & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u;
+    return (path.bounce_counts & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u;
 }
 
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
     uint flags = PHOTON_ACTIVE | stored_flags(path.flags);
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
-               path.depth, path.medium_vertices | PHOTON_IN_MEDIUM, 0u);
+               path.depth, path.bounce_counts | PHOTON_IN_MEDIUM, 0u);
 }
 
 // Whether shadow rays bring the light of a path that comes straight from its light.
@@ -66,7 +66,7 @@ void store_beam(uint index, PhotonPath path, Ray ray, float extent, float u) {
     photon_beams[atomicAdd(beam_count, 1u)] = PhotonBeam(
         ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
         path.flux / probability, stored_flags(path.flags), index | parameters.segment << PHOTON_SEGMENT_SHIFT,
-        path.depth, path.medium_vertices, origin.light_group, origin.max_bounces, 0u, 0u, 0u);
+        path.depth, path.bounce_counts, origin.light_group, origin.max_bounces, 0u, 0u, 0u);
 }
 
 vec3 turned(vec3 direction, float cosine, float angle) {
@@ -96,11 +96,11 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
     float survival = min(largest(flux) / largest(path.flux), 1.0);
     float angle = 2.0 * PI * next_random(random);
     bool survives = next_random(random) < survival;
-    uint medium_vertices = path.medium_vertices + 1u;
-    if (medium_count(medium_vertices) == 1u && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u)
-        medium_vertices |= FIRST_MEDIUM_LIT;
+    uint bounce_counts = medium_counted(path.bounce_counts);
+    bool is_first = medium_count(bounce_counts) == 1u;
+    if (is_first && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) bounce_counts |= FIRST_MEDIUM_LIT;
     if (bounces_of(path.depth) >= iteration.photon_bounces
-        || !within_volume_bounces(medium_vertices, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
+        || !within_volume_bounces(bounce_counts, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
         survives = false;
     }
@@ -111,7 +111,7 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
     photon_paths[index].flags = (path.flags & ~gone) | PHOTON_AFTER_ROUGH_BOUNCE | PATH_SCATTERED_IN_MEDIUM;
     photon_paths[index].flux = survives ? flux / survival : vec3(0.0);
     photon_paths[index].depth += ONE_BOUNCE;
-    photon_paths[index].medium_vertices = medium_vertices;
+    photon_paths[index].bounce_counts = bounce_counts;
     photon_differentials[index].known = 0u;
     photon_differentials[index].before = 0.0;
     rays[index] =

@@ -51,6 +51,13 @@ uint path_depth(uint index) {
                : parameters.segment;
 }
 
+// The bounces of a path by type, 0 where its stages do not count them. Photons come as from a diffuse surface.
+uint path_bounce_counts(uint index) {
+    if (parameters.path_kind == PATH_OF_CAMERA)
+        return path_words[parameters.camera_stride * index + parameters.camera_bounce_counts];
+    return parameters.path_kind == PATH_OF_PHOTON ? counted(0u, SCATTER_DIFFUSE) : 0u;
+}
+
 // How far a path had come straight through surfaces before its ray began.
 float straight_length(uint index) {
     return parameters.path_kind == PATH_OF_CAMERA
@@ -89,6 +96,7 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     uint depth = path_depth(index);
     surface.ray_depth = bounces_of(depth) + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
     surface.transparent_depth = transparents_of(depth);
+    surface.bounce_counts = path_bounce_counts(index);
 #ifdef ROUND_SHAPES
     make_round(surface);
 #endif
@@ -110,7 +118,14 @@ float wavelength_choice(uint index, uint flags) {
 #endif
 
 ClosureBuilder builder_at(Surface surface, float u_choice) {
-    return closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
+    ClosureBuilder builder =
+        closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
+    // As in Cycles, surfaces that diffuse ones see lack the lobes of caustics that are left out. Photons keep them, as
+    // who sees the light that they bring is not known yet (photons/sample_next_ray.glsl).
+    uint dropped = (surface.ray & RAY_DIFFUSE) != 0u ? parameters.dropped_caustics : 0u;
+    builder.dropped_caustics = parameters.path_kind == PATH_OF_CAMERA ? dropped : 0u;
+    builder.is_bare = (dropped & CAUSTIC_REFLECTED) != 0u;
+    return builder;
 }
 
 // What an object that is a holdout, or catches shadows, does to its closure.

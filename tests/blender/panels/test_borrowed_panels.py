@@ -14,9 +14,10 @@ OF_CYCLES = "is about how Cycles works"
 ALIKE = {
     ("CYCLES_MATERIAL_PT_", "RPPM_PT_material_"): "displacement settings surface volume",
     ("CYCLES_RENDER_PT_", "RPPM_PT_"): """
-        bake bake_influence bake_output bake_output_margin bake_selected_to_active curves film motion_blur
-        motion_blur_curve performance sampling sampling_viewport simplify simplify_culling simplify_render
-        simplify_viewport subdivision filter passes
+        bake bake_influence bake_output bake_output_margin bake_selected_to_active curves film
+        light_paths light_paths_caustics light_paths_clamping light_paths_max_bounces motion_blur
+        motion_blur_curve performance sampling sampling_viewport simplify simplify_culling
+        simplify_render simplify_viewport subdivision filter passes
     """,
     ("CYCLES_WORLD_PT_", "RPPM_PT_world_"): "preview ray_visibility surface",
 }
@@ -42,8 +43,6 @@ COUNTERPARTS = {
     "CYCLES_PT_viewport_sampling_presets": "RPPM_PT_presets",
     "CYCLES_RENDER_PT_film_pixel_filter": "RPPM_PT_film",
     "CYCLES_RENDER_PT_film_transparency": "RPPM_PT_film",
-    "CYCLES_RENDER_PT_light_paths": "RPPM_PT_paths",
-    "CYCLES_RENDER_PT_light_paths_max_bounces": "RPPM_PT_paths",
     "CYCLES_RENDER_PT_performance_acceleration_structure": "RPPM_PT_acceleration_structure",
     "CYCLES_RENDER_PT_performance_memory": "RPPM_PT_performance",
     "CYCLES_RENDER_PT_sampling_advanced": "RPPM_PT_advanced",
@@ -67,8 +66,6 @@ EXCLUDED = {
     "CYCLES_OBJECT_PT_shading_gi_approximation": OF_CYCLES,
     "CYCLES_RENDER_PT_curves_viewport_display": "Blender's own viewports draw so",
     "CYCLES_RENDER_PT_debug": OF_CYCLES,
-    "CYCLES_RENDER_PT_light_paths_caustics": "caustics need no switch",
-    "CYCLES_RENDER_PT_light_paths_clamping": "nothing is clamped",
     "CYCLES_RENDER_PT_light_paths_fast_gi": OF_CYCLES,
     "CYCLES_RENDER_PT_passes_aov": f"passes of materials: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_passes_crypto": f"Cryptomatte: {NOT_RENDERED}",

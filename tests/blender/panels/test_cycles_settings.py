@@ -11,11 +11,12 @@ def test_from_cycles_and_back(scene):
     cycles, own = scene.cycles, scene.rppm
     cycles.samples, cycles.preview_samples, cycles.time_limit = 300, 40, 12.5
     cycles.seed, cycles.use_animated_seed, cycles.filter_width, cycles.max_bounces = 9, True, 2.0, 5
+    cycles.diffuse_bounces, cycles.glossy_bounces, cycles.transmission_bounces = 4, 3, 12
     cycles.transparent_max_bounces, own.max_camera_bounces, own.max_photon_bounces = 20, 3, 3
     cycles.volume_bounces = 2
     cycles.use_denoising, cycles.denoising_quality, cycles.preview_denoising_start_sample = True, "FAST", 7
     assert bpy.ops.rppm.copy_from_cycles() == {"FINISHED"}
-    assert [getattr(own, name) for name in list(SHARED)[:9]] == [300, 40, 12.5, 9, True, 2.0, 5, 20, 2]
+    assert [getattr(own, name) for name in list(SHARED)[:12]] == [300, 40, 12.5, 9, True, 2.0, 5, 20, 4, 3, 12, 2]
     assert (own.use_denoising, own.denoising_quality, own.preview_denoising_start_sample) == (True, "FAST", 7)
     assert own.max_camera_bounces == own.max_photon_bounces == 1024, "total bounces mean what they mean in Cycles"
     for name, value in {"samples": 7, "seed": 3, "max_bounces": 2, "use_animated_seed": False}.items():
@@ -59,3 +60,15 @@ def test_passes_of_all_view_layers(scene):
     other.rppm.use_pass_volume_direct = True
     bpy.ops.rppm.copy_to_cycles()
     assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True, True, True]
+
+
+def test_settings_of_light_paths(scene):
+    cycles, own = scene.cycles, scene.rppm
+    cycles.sample_clamp_direct, cycles.sample_clamp_indirect = 2.0, 10.0
+    cycles.caustics_reflective, cycles.caustics_refractive = False, True
+    bpy.ops.rppm.copy_from_cycles()
+    assert (own.sample_clamp_direct, own.sample_clamp_indirect) == (2.0, 10.0)
+    assert not own.caustics_reflective and own.caustics_refractive
+    own.caustics_reflective, own.sample_clamp_direct = True, 0.0
+    bpy.ops.rppm.copy_to_cycles()
+    assert cycles.caustics_reflective and cycles.sample_clamp_direct == 0.0

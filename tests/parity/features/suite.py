@@ -7,7 +7,7 @@ from .shapes import cameras  # noqa: F401
 from .values import coordinates  # noqa: F401
 from .shapes import displacement  # noqa: F401
 from .surfaces import fibers  # noqa: F401
-from .lighting import light_limits, light_linking, lights  # noqa: F401
+from .lighting import light_limits, light_linking, light_paths, lights  # noqa: F401
 from .surfaces import media, metallic  # noqa: F401
 from .lighting import portals, profiles  # noqa: F401
 from .surfaces import ray_nodes, shaders  # noqa: F401

@@ -15,9 +15,21 @@ SHARED = {
     "seed": "seed",
     "use_animated_seed": "use_animated_seed",
     "filter_width": "filter_width",
-    "max_bounces": "max_bounces",
-    "transparent_max_bounces": "transparent_max_bounces",
-    "volume_bounces": "volume_bounces",
+    **{
+        name: name
+        for name in (
+            "max_bounces",
+            "transparent_max_bounces",
+            "diffuse_bounces",
+            "glossy_bounces",
+            "transmission_bounces",
+            "volume_bounces",
+            "sample_clamp_direct",
+            "sample_clamp_indirect",
+            "caustics_reflective",
+            "caustics_refractive",
+        )
+    },
     **{
         name: name
         for what in ("use_{}denoising", "{}denoising_input_passes", "{}denoising_prefilter", "{}denoising_quality")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the render tab that show settings, but for those of sampling."""
+"""Panels of the render tab that show settings of radii, animation and film."""
 
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
@@ -9,30 +9,6 @@ from ...export.view_layer.settings import export_settings
 from ...readings import radius_reading
 from ...reports import reports_of
 from ..base import RppmPanel, length_text, reading
-
-
-class RPPM_PT_paths(RppmPanel, bpy.types.Panel):
-    bl_label = "Max Bounces"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
-        column = self.column()
-        column.prop(settings, "max_bounces", text="Total")
-        column.prop(settings, "volume_bounces", text="Volume")
-        column.prop(settings, "transparent_max_bounces", text="Transparent")
-        column.prop(settings, "specular_roughness", text="Specular")
-
-
-class RPPM_PT_path_parts(RppmPanel, bpy.types.Panel):
-    bl_label = "Camera and Photons"
-    bl_parent_id = "RPPM_PT_paths"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: bpy.types.Context) -> None:
-        settings = context.scene.rppm
-        column = self.column()
-        column.prop(settings, "max_camera_bounces", text="Camera")
-        column.prop(settings, "max_photon_bounces", text="Photon")
 
 
 class RPPM_PT_radius(RppmPanel, bpy.types.Panel):
@@ -79,8 +55,6 @@ class RPPM_PT_film(RppmPanel, bpy.types.Panel):
 
 
 CLASSES = (
-    RPPM_PT_paths,
-    RPPM_PT_path_parts,
     RPPM_PT_radius,
     RPPM_PT_animation,
     RPPM_PT_film,

@@ -6,6 +6,7 @@ import enum
 from ....gl.buffers.constants import Constants
 from ....gl.buffers.records import Record
 from ....gl.buffers.storage_blocks import StorageBlock
+from ....scene.settings import CausticKind
 
 PHOTON_PATH = Record(
     "PhotonPath",
@@ -14,12 +15,14 @@ PHOTON_PATH = Record(
     depth="uint",
     escaped="float",
     deposited="float",
-    medium_vertices="uint",
+    bounce_counts="uint",
 )
 """Flux that a photon path carries along its current ray, zero once the path has ended, and its flags
 (PhotonFlag) with the volumes it is in (materials/medium.glsl); its ``depth`` (Depths); and of its flux, W summed over
-the channels, what left the scene and what it still carried to the vertex at which a limit cut it off.
-``medium_vertices`` is the number of its vertices in media, with FIRST_MEDIUM_LIT and HIDDEN_FROM_MEDIA."""
+the channels, what left the scene and what it still carried to the vertex at which a limit cut it off. ``bounce_counts``
+tell how often lobes of each type have scattered it since the surface that its light lit first
+(shaders/common/bounce_counts.glsl); they are 0 where nobody asks. Their fourth count is
+of vertices in media, with FIRST_MEDIUM_LIT and HIDDEN_FROM_MEDIA."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
 PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint", light_group="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
@@ -30,6 +33,9 @@ StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 DEPTH_BITS = 11
 """Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""
 Constants("Depths", DEPTH_BITS=DEPTH_BITS)
+CAUSTIC_SHIFT = 2 * DEPTH_BITS
+"""Place of the CausticKind in the depth of a photon and of its path, above both numbers."""
+Constants("CausticKinds", CAUSTIC=CausticKind, CAUSTIC_SHIFT=CAUSTIC_SHIFT)
 
 
 class PhotonFlag(enum.IntFlag):
@@ -70,14 +76,15 @@ Constants("PhotonFootprints", PHOTON_FLAG_MASK=(1 << PHOTON_FLAG_BITS) - 1)
 SCATTERED_IN_MEDIUM = 1 << PHOTON_FLAG_BITS + 1
 """Flag of a photon path in a segment in which a medium has scattered it, so that no surface does."""
 FIRST_MEDIUM_LIT = 1 << 30
-"""Flag of ``medium_vertices``: light came to the first vertex in a medium straight or by specular surfaces."""
+"""Flag above the count of vertices in media: light came to the first of them straight or by specular surfaces."""
 HIDDEN_FROM_MEDIA = 1 << 29
-"""Flag of ``medium_vertices``: from a light of which media scatter nothing until something else has."""
+"""Flag beside it: from a light of which media scatter nothing until something else has."""
 Constants(
     "MediumScattering",
     PATH_SCATTERED_IN_MEDIUM=SCATTERED_IN_MEDIUM,
     FIRST_MEDIUM_LIT=FIRST_MEDIUM_LIT,
     HIDDEN_FROM_MEDIA=HIDDEN_FROM_MEDIA,
+    MEDIUM_COUNT_SHIFT=24,
 )
 Constants("Dispersion", PATH_DISPERSED=1 << PHOTON_FLAG_BITS)
 """A flag of the camera's and the photons' paths alike, above their own: their light has but one wavelength."""

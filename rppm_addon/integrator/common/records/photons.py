@@ -15,15 +15,15 @@ PHOTON = Record(
     distance="float",
     path="uint",
     depth="uint",
-    medium_vertices="uint",
-    unused0="uint",
+    bounce_counts="uint",
+    unused="uint",
 )
 """One light path vertex, 64 bytes (paper section 5.1). Those of a segment follow each other as its active paths do.
 ``direction`` points back to where the photon came from, which is ``distance`` meters away, straight through what is
 transparent. The upper bits of ``flags`` are those of the radius of its footprint, meters, 0 where that is not known.
 ``path`` is the number of its path, with that of the segment above (PhotonNumbers); ``depth`` that of the path (Depths),
-with PHOTON_CONTRIBUTED once an importon takes it. ``medium_vertices`` is that of the path, with
-PHOTON_IN_MEDIUM where a medium has scattered it, and no surface; the flux is then what the medium scatters, in all
+with PHOTON_CONTRIBUTED once an importon takes it, and ``bounce_counts`` those of the path,
+with PHOTON_IN_MEDIUM where a medium has scattered it, and no surface; the flux is then what the medium scatters, in all
 directions together."""
 PHOTON_SEGMENT_SHIFT = 22
 """Photons of an iteration are fewer (MOST_PHOTONS), and segments than what is left of a word (MOST_SEGMENTS)."""

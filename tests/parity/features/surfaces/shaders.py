@@ -221,7 +221,7 @@ value(GROUP, "lengths and depths behind two panes", _shown, 0.2, prepare=_panes,
 value(GROUP, "length behind two panes and one that bends rays", _LENGTH, 0.2, prepare=_bending_pane,
       settings={"camera_path_length": 5})  # fmt: skip
 SHADOWS = {
-    "mean": 0.15, "block": 1.0,
+    "mean": 0.15, "block": 1.0, "warns": True,
     "reason": "rays to lights do not ask materials: glass goes on to make shadows and caustics",
 }  # fmt: skip
 _glass = mixed(shader("BsdfGlass", {"Roughness": 0.0}), CLEAR, socket("LightPath", "Is Shadow Ray"))

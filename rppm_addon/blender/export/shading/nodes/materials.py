@@ -3,6 +3,7 @@
 
 import bpy
 
+from .....materials.traits.transparency import passes_by_ray_length, stops_shadow_rays_as_glass
 from .....scene import Material, NodeGraph
 from ...context import ExportContext
 from . import surface_nodes, value_nodes, volume_nodes  # noqa: F401  register their handlers
@@ -34,6 +35,7 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
         export_displacement(exporter, material, output)
     graph.surface = exporter.surface()
     graph.aovs = export_aovs(exporter, tree.tree)
+    _warn_of_light_paths(owner, graph, context)
     shadow = getattr(material, "use_transparent_shadow", True)
     exported = Material(material.name, graph, transparent_shadow=shadow, pass_index=material.pass_index)
     if hasattr(material, "rppm") and material.rppm.use_dispersion:
@@ -43,3 +45,16 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
         if not exporter.is_linked(output.inputs["Surface"], ()):
             graph.surface = graph.add("volume_boundary", "bsdf")
     return exported
+
+
+def _warn_of_light_paths(owner: str, graph: NodeGraph, context: ExportContext) -> None:
+    """Report uses of the Light Path node that give another picture than in Cycles."""
+    if stops_shadow_rays_as_glass(graph):
+        context.report.warn(
+            f"{owner}: its glass lets shadow rays pass (Is Shadow Ray); it makes shadows and caustics all the same"
+        )
+    if passes_by_ray_length(graph):
+        context.report.warn(
+            f"{owner}: it lets light pass by Ray Length, which photons measure from where they come from; light behind "
+            "it may differ"
+        )
