@@ -27,19 +27,28 @@ readonly buffer CameraPaths;
 readonly buffer Media;
 buffer ShadowMedia;
 #include "common/bsdf/closure.glsl"
+#include "common/transparency.glsl"
 #include "materials/medium.glsl"
 #endif
 
 void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
-    uint surfaces = transparents_of(camera_paths[index].depth) + parameters.surface_count;
-    vec3 transmittance = surfaces < iteration.transparent_max_bounces ? closures[index].transparent : vec3(0.0);
     Ray ray = shadow_rays[index];
+    uint surfaces = transparents_of(camera_paths[index].depth) + parameters.surface_count;
+    bool passes = surfaces < iteration.transparent_max_bounces;
 #ifdef MEDIA
+    // Surfaces of volumes alone are not counted: below its media, the word has their number.
     uint media_flags = shadow_media[index];
+    surfaces -= min(media_flags & PATH_MASK, surfaces);
+    bool counts = counts_as_transparent(closures[index]);
+    passes = surfaces < iteration.transparent_max_bounces || !counts;
+    shadow_media[index] =
+        cross_surface(media_flags, closures[index].material, closure_backfacing(closures[index])) + (counts ? 0u : 1u);
+#endif
+    vec3 transmittance = passes ? closures[index].transparent : vec3(0.0);
+#ifdef MEDIA
     transmittance *= segment_transmittance(media_flags, ray.origin, ray.direction, closures[index].distance);
-    shadow_media[index] = cross_surface(media_flags, closures[index].material, closure_backfacing(closures[index]));
 #endif
     contributions[index].rgb *= transmittance;
     shadow_rays[index].maximum_distance = 0.0;

@@ -172,7 +172,7 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
 // Media that the shadow ray of a path begins in, by the flags of a path that is in them.
 void set_shadow_media(uint index, uint flags) {
 #ifdef MEDIA
-    shadow_media[index] = flags;
+    shadow_media[index] = flags & ~PATH_MASK;
 #endif
 }
 

@@ -46,6 +46,10 @@ _SURFACES_AT_ONCE = 16
 """Transparent surfaces between two readings of the number of shadow rays from a GPU, each of which waits for it."""
 
 
+_MOST_VOLUME_SURFACES = 32
+"""Surfaces of volumes alone that a shadow ray passes at most, beside those that it counts as transparent."""
+
+
 def _media_pixels(sizes: StageSizes) -> int:
     return band_pixels(sizes) if sizes.features.has_media else 0
 
@@ -163,7 +167,7 @@ class DirectLight(Stage):
             buffer.require_items(self.active_rays.capacity)
         passing.require(self.active_rays.capacity, to_keep=True)
         passing.take(self.active_rays, rays.buffer)
-        most = context.settings.transparent_max_bounces
+        most = context.settings.transparent_max_bounces + (_MOST_VOLUME_SURFACES if self._media.size else 0)
         for surfaces in range(most + 1):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return

@@ -68,8 +68,11 @@ class Media(Stage):
         """Return the volume in which media lie, m^3: that of the boxes around them, or of the scene."""
         if not self.is_on:
             return 0.0
-        extent = np.maximum(context.geometry.bounds_high - context.geometry.bounds_low, 1e-6)
-        whole = float(np.prod(extent))
+        low, high = context.geometry.bounds_low, context.geometry.bounds_high
+        if context.materials.media.world_scatters:
+            seen = [context.scene.camera.matrix[:3, 3], *(light.matrix[:3, 3] for light in context.scene.lights)]
+            low, high = np.minimum(low, np.min(seen, axis=0)), np.maximum(high, np.max(seen, axis=0))
+        whole = float(np.prod(np.maximum(high - low, 1e-3)))
         if context.materials.media.world_scatters:
             return whole
         boxes = _boxes(context.scene, context.materials.media.materials).astype(np.float64)

@@ -123,7 +123,7 @@ void main() {
     vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, distance);
     if (parameters.crosses_media == 0u)
         transmittance *= segment_transmittance(path.flags, position, sampled.direction, sampled.distance);
-    shadow_media[index] = path.flags;
+    shadow_media[index] = path.flags & ~PATH_MASK;
     vec3 radiance = path.throughput * transmittance * scattered * sampled.weight / (pdf * choice.probability);
     if (!(largest(radiance) > 0.0)) return;
     uint link = 0u;

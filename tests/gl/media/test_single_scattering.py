@@ -52,7 +52,6 @@ def test_boxes(renderer, media, eye, lamp):
     fog.assert_expected(fog.pictures_of(renderer, scene), expected, 0.01)
 
 
-@pytest.mark.xfail(strict=True, reason="the limit of transparent surfaces counts those of volumes for shadow rays")
 def test_surfaces_of_volumes_are_no_transparent_surfaces(renderer):
     """Cycles does not count them."""
     camera, lamp = fog.camera(OUTSIDE, (0.0, 0.0, 0.0), 0.15), (0.5, -0.3, 2.5)
