@@ -21,8 +21,8 @@ _named: set[tuple[str, str]] = set()
 
 @contextlib.contextmanager
 def gas_left_out(bpy: ModuleType) -> Iterator[None]:
-    """A with block in which files are opened without evaluating their gas domains, as nothing of these is rendered and
-    Blender's module aborts as it frees one that it has evaluated after its first frame."""
+    """A with block in which files are opened without evaluating their gas domains, as Blender's module aborts as it
+    frees one that it has evaluated after its first frame. Their smoke and fire are left out, with a warning."""
 
     @bpy.app.handlers.persistent
     def leave_out(*_: object) -> None:
@@ -40,12 +40,19 @@ def gas_left_out(bpy: ModuleType) -> Iterator[None]:
 
 def note_fluid_domains(bpy: ModuleType, frame: int) -> None:
     """Take note of the fluid domains of the open file before it is evaluated at a frame; a warning names once each of
-    liquid of which Blender's simulation may abort there, as nothing can once it has."""
+    gas, and each of liquid of which Blender's simulation may abort there, as nothing can once it has."""
     domains = [(source.name, modifier.domain_settings) for source in bpy.data.objects for modifier in _domains(source)]
     if domains:
         _temporary_folders.add(Path(bpy.app.tempdir))
     for name, settings in domains:
         key = bpy.data.filepath, name
+        if settings.domain_type == "GAS" and key not in _named:
+            _named.add(key)
+            logger.warning(
+                'Object "%s": smoke and fire are left out, as Blender as a module cannot free them; render the file in '
+                "Blender itself (blender -b)",
+                name,
+            )
         if settings.domain_type != "GAS" and frame > settings.cache_frame_start and key not in _named:
             _named.add(key)
             logger.warning(

@@ -205,7 +205,7 @@ def test_warnings_are_reported(lit, monkeypatch):
     bpy.ops.render.render()
     texts = [text for kind, text in reports if kind == {"WARNING"}]
     assert len(texts) == 2 and any("it sees the world only" in text for text in texts)
-    assert any(text.startswith("Volumes are not rendered yet (") and "17 more" in text for text in texts)
+    assert any(text.startswith("Missing.vdb: missing.vdb not found (") and "17 more" in text for text in texts)
 
 
 def test_progress_and_status(lit, monkeypatch):

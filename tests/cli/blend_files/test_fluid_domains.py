@@ -69,5 +69,5 @@ def test_a_domain_of_liquid_is_named_once_and_its_files_are_removed(tmp_path):
     folder.mkdir()
     run = subprocess.run([sys.executable, "-c", ANIMATE, folder], capture_output=True, text=True, timeout=60)
     assert (run.returncode, folder.exists()) == (7, False)
-    first, second, warning, third = run.stderr.splitlines()
-    assert (first, second, third) == ("frame 1", "frame 2", "frame 3") and '"LIQUID"' in warning
+    first, gas, second, warning, third = run.stderr.splitlines()
+    assert (first, second, third) == ("frame 1", "frame 2", "frame 3") and '"LIQUID"' in warning and '"GAS"' in gas

@@ -20,7 +20,7 @@ from ..shading.lights.lights import export_light
 from ..shading.nodes.material_table import MaterialTable
 from ..shading.nodes.missing_attributes import MissingAttributes
 from ..view_layer.layers import light_group_of
-from ..view_layer.visibility import visibility_of
+from ..view_layer.visibility import is_seen, visibility_of
 from .faceless import FacelessObjects
 from .instance_attributes import InstanceAttributes
 from .instance_description import InstanceDescription, Instancer
@@ -93,7 +93,7 @@ class InstanceReader:
         if kind not in SURFACE_TYPES or (kind == "CURVES" and not self._context.curves.shown):
             return None
         visibility = visibility_of(source)
-        if not visibility:
+        if not is_seen(visibility):
             return None
         if before is not None and self._meshes.knows(before.mesh):
             # The rest is read again, as it may be animated without Blender naming the object as changed.

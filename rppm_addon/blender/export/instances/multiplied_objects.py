@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from ..camera.culling import Selection
+from ..view_layer.visibility import is_seen
 from .converted_curves import ConvertedCurves
 from .instance_description import InstanceDescription, Instancer
 from .instance_reader import CONVERTED_TYPES, InstanceReader
@@ -66,7 +67,7 @@ class MultipliedObjects:
         if prototype is None:
             prototype = self._prototypes[key] = self._begin_prototype(source)
         is_light = source.type == "LIGHT"
-        if instancer is None or not entry.show_self or not (instancer.visibility or is_light):
+        if instancer is None or not entry.show_self or not (is_seen(instancer.visibility) or is_light):
             return
         if selection.culling.leaves_out(source, matrix):
             return
@@ -138,7 +139,7 @@ class MultipliedObjects:
     ) -> None:
         """Place what is no mesh yet, which each instance has of its own."""
         description = self._reader.describe(source, entry)
-        if description is None or not description.visibility & instancer.visibility:
+        if description is None or not is_seen(description.visibility & instancer.visibility):
             return
         description = description.multiplied_by(instancer)
         random, particle = random_of(entry), self._particles.of(entry)

@@ -7,7 +7,7 @@ import numpy as np
 from ..camera.culling import Selection
 from ..common.report import Report
 from ..geometry.strands.particle_hair import HAIRLESS_MODES, hair_modifiers, hair_systems
-from ..view_layer.visibility import visibility_of
+from ..view_layer.visibility import is_seen, visibility_of
 from .instance_reader import InstanceReader
 from .multiplied_objects import random_of
 from .placements import Placements, identity_of, identity_of_hair
@@ -41,7 +41,7 @@ class ObjectHair:
             return
         instancer = None if parent is None else self._reader.instancer(parent, owner.session_uid)
         visibility = visibility_of(source)
-        if not (visibility if instancer is None else visibility & instancer.visibility):
+        if not is_seen(visibility if instancer is None else visibility & instancer.visibility):
             return
         systems = list(hair_systems(source, self._is_render))
         if source.mode in HAIRLESS_MODES and any(hair_modifiers(source, self._is_render)):

@@ -22,6 +22,11 @@ def visibility_of(source: bpy.types.Object) -> RayVisibility:
     ]
 
 
+def is_seen(visibility: RayVisibility) -> bool:
+    """Return whether any rays see an object but those that a volume has scattered, which see no surfaces."""
+    return visibility._value_ & ~_VOLUME_SCATTER != 0
+
+
 def common_visibility(first: RayVisibility, second: RayVisibility) -> RayVisibility:
     """The rays that are among both."""
     # A flag's own operator takes several times as long.

@@ -131,7 +131,8 @@ def test_grids_of_a_domain_of_gas_fill_its_texture_space():
         domain_type="GAS", domain_resolution=(3, 2, 4), density_grid=density.transpose(2, 1, 0).ravel(),
         flame_grid=[], temperature_grid=[], color_grid=[], heat_grid=[],
     )  # fmt: skip
-    modifier = SimpleNamespace(type="FLUID", fluid_type="DOMAIN", domain_settings=settings)
+    shown = {"show_render": True, "show_viewport": True}
+    modifier = SimpleNamespace(type="FLUID", fluid_type="DOMAIN", domain_settings=settings, **shown)
     data = SimpleNamespace(texspace_location=(1.0, 0.0, 0.0), texspace_size=(3.0, 2.0, 4.0))
     (grid,) = gas_domains.read_gas(SimpleNamespace(modifiers=[modifier], data=data)).values()
     np.testing.assert_array_equal(grid.values[1:-1, 1:-1, 1:-1, 0], density)

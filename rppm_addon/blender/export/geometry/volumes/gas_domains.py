@@ -19,14 +19,18 @@ def is_gas_domain(source: bpy.types.Object) -> bool:
 
 
 def _domain_settings(source: bpy.types.Object) -> "bpy.types.FluidDomainSettings | None":
-    for modifier in source.modifiers:
-        if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
-            return modifier.domain_settings
-    return None
+    return next((modifier.domain_settings for modifier in _domains(source)), None)
+
+
+def _domains(source: bpy.types.Object) -> list[bpy.types.FluidModifier]:
+    fluids = [modifier for modifier in source.modifiers if modifier.type == "FLUID"]
+    return [modifier for modifier in fluids if modifier.fluid_type == "DOMAIN"]
 
 
 def read_gas(source: bpy.types.Object) -> dict[str, VolumeGrid]:
     """The grids of an evaluated domain by name; empty where nothing is baked."""
+    if not any(modifier.show_render or modifier.show_viewport for modifier in _domains(source)):
+        return {}  # Blender's module may abort where the simulation was not evaluated
     settings, mesh = _domain_settings(source), source.data
     resolution = np.array(settings.domain_resolution, np.int64)
     low = np.array(mesh.texspace_location) - np.array(mesh.texspace_size)
