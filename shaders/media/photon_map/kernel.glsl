@@ -29,7 +29,8 @@ float kernel_beyond_surfaces(Ray ray, Closure end, float distance, float radius)
         float cosine = abs(dot(unpack_unit_vector(end.geometric_normal), ray.direction));
         beyond += kernel_beyond_plane(cosine * (end.distance - distance) / radius);
     }
-    return beyond;
+    // A medium may go on behind a surface that only passes light.
+    return min(beyond, 0.5);
 }
 
 // Most that the density at a point is raised over the kernel's mean.
