@@ -40,7 +40,6 @@ SCENES = (
     "kaleidoscope",
     "lighthouse",
     "pool_shafts",
-    "milk",
 )
 FRAMES = {"aquarium": 1, "disco_ball": 12}
 """Frame that is shown, of each scene that moves."""
