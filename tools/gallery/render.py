@@ -38,12 +38,16 @@ SCENES = (
     "chandelier",
     "headlamp",
     "kaleidoscope",
+    "lighthouse",
+    "pool_shafts",
 )
 FRAMES = {"aquarium": 1, "disco_ball": 12}
 """Frame that is shown, of each scene that moves."""
 FILM_FRAMES, FILM_SIZE, FILM_SPEED = "1..48..4", (320, 180), 6
 """Which are rendered, how large, and how many are shown a second."""
 SHARED = (SCRIPTS / "stage.py", SAMPLES / "sample_scene.py", SAMPLES / "pool.py")
+VOLUMES = SCRIPTS / "volumes.py"
+"""The script that scenes with volumes share besides."""
 
 
 def call(*command: object, label: str) -> str:
@@ -64,7 +68,8 @@ def last_json(text: str) -> dict:
 
 def script_digest(name: str) -> str:
     """Return the digest of all files that make a scene."""
-    files = (SCRIPTS / f"{name}.py", *SHARED)
+    script = SCRIPTS / f"{name}.py"
+    files = (script, *SHARED, *([VOLUMES] if "from volumes import" in script.read_text(encoding="utf-8") else ()))
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 
