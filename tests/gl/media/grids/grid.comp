@@ -9,7 +9,6 @@ layout(local_size_x = 64) in;
 #include "common/iteration.glsl"
 #include <Distances>
 uniform Parameters { GridTestParameters parameters; };
-readonly buffer Materials;
 readonly buffer Media;
 #include "materials/medium.glsl"
 readonly buffer TestRays { vec4 test_rays[]; };

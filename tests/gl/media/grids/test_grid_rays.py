@@ -11,7 +11,7 @@ from rppm_addon.gl.buffer_sets import BufferSet, StorageBuffer
 from rppm_addon.gl.buffers.records import Record
 from rppm_addon.gl.programs.bindings import ITERATION
 from rppm_addon.materials.media.bricks import BRICK_VOXELS, Lattice, brick_grid
-from rppm_addon.materials.records import MATERIAL, MEDIUM
+from rppm_addon.materials.records import MEDIUM
 
 Record("GridTestParameters", count="uint", media="uint")
 SHADER = str(Path(__file__).with_name("grid.comp"))
@@ -22,7 +22,6 @@ BITS = 2
 
 class Tables(BufferSet):
     media = StorageBuffer("media", MEDIUM, block="Media")
-    materials = StorageBuffer("materials", MATERIAL, block="Materials")
     voxels = StorageBuffer("voxels", "uint", texel_bytes=4, block="MediumVoxels")
     rays = StorageBuffer("rays", "vec4", block="TestRays")
     results = StorageBuffer("results", "vec4", 4 * RAYS, block="Results")
@@ -78,10 +77,9 @@ def traced(context, library, records, fields, media, rays):
         first = sum(map(len, words))
         words.append(field.grid.words_at(first))
         listed.append(field.record(first))
-    materials = MATERIAL.zeros(1)
-    materials["medium_bits"] = BITS
-    tables.media.upload(np.array(listed))
-    tables.materials.upload(materials)
+    media_records = np.array(listed)
+    media_records["medium_bits"] = BITS
+    tables.media.upload(media_records)
     tables.voxels.upload(np.concatenate(words))
     tables.rays.upload(rays.astype(np.float32))
     iteration = iteration_buffer(context, number=3)

@@ -6,7 +6,6 @@ layout(local_size_x = 64) in;
 
 #include <ScatteredPhaseParameters>
 #include "common/invocation.glsl"
-readonly buffer Materials;
 readonly buffer Media;
 readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"

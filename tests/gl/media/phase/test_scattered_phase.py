@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.buffers.records import Record
+from rppm_addon.gl.programs.bindings import ITERATION
 from rppm_addon.scene import Camera, Material, NodeGraph, Scene, World
 
 Record("ScatteredPhaseParameters", weight="vec3", count="uint", flags="uint", cosine="float")
@@ -38,7 +40,8 @@ def results(mapper, context, library, flags: int, cosine: float = 0.3) -> np.nda
     buffer = context.moderngl.buffer(reserve=16 * COUNT)
     parameters = {"weight": (0.2, 0.3, 0.5), "count": COUNT, "flags": flags, "cosine": cosine}
     program = library.compute(SHADER, {"MEDIA": 1})
-    blocks = {name: {**tables.blocks, **tables.media.blocks}[name] for name in program.blocks if name != "Results"}
+    bound = {**tables.blocks, **tables.media.blocks, ITERATION: iteration_buffer(context, number=1)}
+    blocks = {name: bound[name] for name in program.blocks if name != "Results"}
     program.run(COUNT, blocks | {"Results": buffer}, parameters)
     read = np.frombuffer(buffer.read(), np.float32).reshape(COUNT, 4)
     buffer.release()
