@@ -7,6 +7,7 @@ from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.buffers.buffers import GrowingBuffer
 from rppm_addon.integrator.common.active_paths import ActivePaths
+from rppm_addon.integrator.common.records.camera_paths import CAMERA_PATH
 from rppm_addon.integrator.common.records.importons import IMPORTON, GatherFlag
 from rppm_addon.integrator.common.records.photon_paths import PHOTON_FLAG_BITS, PHOTON_ORIGIN, PhotonFlag
 from rppm_addon.integrator.common.records.photons import PHOTON, PHOTON_CONTRIBUTED
@@ -36,13 +37,16 @@ class Device:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(photons,) bool of those that contributed, (importons,) global photons taken, (importons,) bool of those
         whose sums are more than 0."""
-        buffers = [GrowingBuffer(self._context, name) for name in ("photons", "importons", "photon origins", "range")]
+        buffers = [
+            GrowingBuffer(self._context, name) for name in ("photons", "importons", "photon origins", "range", "paths")
+        ]
         directions, whole = PHOTON_ORIGIN.zeros(len(photons)), np.uint32([0, len(photons)])
-        for buffer, array in zip(buffers, (photons, importons, directions, whole), strict=True):
+        paths = CAMERA_PATH.zeros(len(importons))
+        for buffer, array in zip(buffers, (photons, importons, directions, whole, paths), strict=True):
             buffer.upload(array)
         sizes = StageSizes(len(importons), 1, photons=len(photons), photon_segments=1)
         listed = PhotonList(self._context, self._library, sizes)
-        blocks = dict(zip(("Photons", "PhotonOrigins", "PhotonRange"), (b.buffer for b in (buffers[0], *buffers[2:]))))
+        blocks = dict(zip(("Photons", "PhotonOrigins", "PhotonRange"), (b.buffer for b in (buffers[0], *buffers[2:4]))))
         listed.collect(blocks, len(photons), DirectPhotons.ALL)
         sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, 1)
@@ -57,7 +61,7 @@ class Device:
         )  # fmt: skip
         active = ActivePaths(self._context, self._library, "paths", "take fewer")
         active.fill(len(importons))
-        taking = SplatTargets(buffers[1].buffer, active, False, True, None, np.zeros(3))
+        taking = SplatTargets(buffers[1].buffer, buffers[4].buffer, active, False, True, None, np.zeros(3))
         grid.prepare(stored)
         grid.splat(stored, taking, sums)
         contributed = buffers[0].read(PHOTON.dtype, len(photons))["depth"] & PHOTON_CONTRIBUTED != 0

@@ -18,6 +18,7 @@ void main() {
     uint index = invocation_index();
     if (index >= parameters.count) return;
     float u = (float(index) + 0.5) / float(parameters.count);
-    PhaseFunction chosen = sample_path_phase_function(parameters.flags, parameters.weight, u);
-    results[index] = vec4(scattered_phase(parameters.flags, parameters.cosine).xy, chosen.parameters.x, u);
+    PlaceOnRay at = PlaceOnRay(vec3(0.0), vec3(0.0, 0.0, 1.0), 0.0);
+    PhaseFunction chosen = sample_path_phase_function(parameters.flags, at, parameters.weight, u);
+    results[index] = vec4(scattered_phase(parameters.flags, at, parameters.cosine).xy, chosen.parameters.x, u);
 }
