@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/random.glsl"
 uniform Parameters { LightChoicesParameters parameters; };
+#include "materials/medium.glsl"
 #include "lights/light_tree.glsl"
 writeonly buffer Results { vec4 results[]; };
 
@@ -41,7 +42,7 @@ void main() {
         }
         ScatterPoint from = ScatterPoint(LitPoint(origin, vec3(0.0), false, 0u), 0.0, 0.0, false, 0u);
         IntersectedLights passed =
-            intersect_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0, vec3(0.0));
+            intersect_lights(from, direction, vec2(0.0, parameters.reach), RAYS_WITH_VISIBILITY, 0.0, 0u);
         results[index] = vec4(passed.radiance.xy, all.xy);
         return;
     }
