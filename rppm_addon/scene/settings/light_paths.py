@@ -86,7 +86,7 @@ class LightPathSettings(SettingGroup):
         0,
         "Volume Bounces",
         "Most times that light is scattered within volumes after the first, which Max Bounces limits as well. 0 is "
-        "single scattering",
+        "single scattering; from 31 on there is no other limit",
         minimum=0,
         maximum=_MOST_BOUNCES,
         soft_maximum=64,
