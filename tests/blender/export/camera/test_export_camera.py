@@ -27,11 +27,10 @@ def project(camera, point):
 def blender_projection(scene, camera_object, point):
     """The same by Blender's projection matrix for the frame's size in pixels."""
     render = scene.render
-    share = render.resolution_percentage / 100
     matrix = camera_object.calc_matrix_camera(
         depsgraph(),
-        x=max(1, int(render.resolution_x * share)),
-        y=max(1, int(render.resolution_y * share)),
+        x=max(1, render.resolution_x * render.resolution_percentage // 100),
+        y=max(1, render.resolution_y * render.resolution_percentage // 100),
         scale_x=render.pixel_aspect_x,
         scale_y=render.pixel_aspect_y,
     )
