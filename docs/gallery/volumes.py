@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the scripts of the gallery's scenes with volumes do alike."""
+"""Volume nodes and settings that the gallery's scenes with volumes share."""
 
 import bpy
 

@@ -76,9 +76,8 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
     context.begin(iteration)
     photons = stages.photons
     photons.emit(context, iteration)
-    if stages.media.is_on:
-        stages.photon_beams.clear(stages.media.volume(context))
     stages.media.enter_photons(context, photons, iteration)
+    stages.photon_beams.clear(stages.media.volume)
     for segment in range(context.settings.photon_segments):
         if segment > 0 and not photons.trace(context, segment):
             break
@@ -94,7 +93,7 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     listed = stages.photons.list_stored(context, estimator.photon_list, iteration)
     radii = learning.radii_for(iteration, listed)
     context.iteration_block.write_radii(radii)
-    stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume(context))
+    stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume)
     stages.photon_beams.prepare(context, iteration)
     estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
     return radii

@@ -10,10 +10,8 @@
 #include "common/path_history.glsl"
 #include "common/path_depth.glsl"
 #include "common/surface_tolerance.glsl"
-#ifdef MEDIA
-#include "common/volume_bounces.glsl"
-#endif
 readonly buffer PhotonOrigins;
+#include "common/photon_depth.glsl"
 #ifdef DROPS_CAUSTICS
 #include <CausticKinds>
 #endif
@@ -91,19 +89,6 @@ bool within_reach(uint gathers, vec3 offset, float radius, uint photon_flags) {
     return dot(offset, offset) < radius * radius;
 }
 
-// Whether light has been scattered more often than any or its own is to, from what it lights first to the camera, or
-// has passed more transparent surfaces.
-bool exceeds_depth(uint importon_history, uint photon_number) {
-#ifdef MEDIA
-    if (!within_volume_bounces(photons[photon_number].bounce_counts, photons[photon_number].flags, 0u)) return true;
-#endif
-    uint depth = arrived_depth(importon_history) + (photons[photon_number].depth & DEPTH_MASK);
-    uint most = iteration.max_bounces;
-    if (iteration.limits_bounces != 0u)
-        most = min(most, photon_origins[photon_path_of(photons[photon_number].path)].max_bounces);
-    return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
-}
-
 // The bounces by type of the path of an importon, by its number, as it came.
 uint arrived_counts(uint number) {
 #ifdef COUNTS_BOUNCES
@@ -159,7 +144,7 @@ bool density_estimate(IMPORTON, uint counts, uint photon_number, out Estimate es
     // Photons count on the side they arrived at; only transmission links the two sides.
     uint kind = unpack_kind(ITS.lobe_kind);
     if (alignment < 0.0 && !lobe_transmits(kind) && largest(ITS.translucent) <= 0.0) return false;
-    if (exceeds_depth(ITS.history, photon_number)) return false;
+    if (exceeds_depth(arrived_depth(ITS.history), photon_number, 0u)) return false;
     vec3 direction = photons[photon_number].direction;
     float side = alignment > 0.0 ? 1.0 : -1.0, away = photons[photon_number].distance;
     if (is_shut_off(side * height, dot(offset, photon_normal), side * dot(direction, geometric) * away, away, radius)

@@ -83,3 +83,11 @@ vec3 sample_sphere(vec2 u) {
 vec2 sphere_to_square(vec3 direction) {
     return vec2(0.5 - 0.5 * direction.z, fract(atan(direction.y, direction.x) / (2.0 * PI)));
 }
+
+// The direction at an angle of this cosine to an axis; u: of the angle around it, in [0, 1).
+vec3 direction_around(vec3 axis, float cosine, float u) {
+    vec3 t, b;
+    tangent_frame(axis, t, b);
+    float angle = 2.0 * PI * u, sine = sqrt(max(0.0, 1.0 - cosine * cosine));
+    return normalize(sine * (cos(angle) * t + sin(angle) * b) + cosine * axis);
+}

@@ -4,6 +4,7 @@
 
 #include "common/transparency.glsl"
 #include "photons/differentials.glsl"
+#include "photons/path_flags.glsl"
 
 // The vertex of a photon path on a surface.
 struct PhotonVertex {
@@ -28,13 +29,6 @@ PhotonVertex photon_vertex(uint index, PhotonPath path, Ray ray) {
 float channel_sum(vec3 flux) { return flux.x + flux.y + flux.z; }
 
 bool has_flux(vec3 flux) { return largest(flux) > 0.0; }
-
-// The flags of a path as those of a photon.
-uint photon_flags(uint path_flags) {
-    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
-    return (path_flags & PHOTON_FLAG_MASK & ~(history | history >> PHOTON_HISTORY_SHIFT))
-           | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
-}
 
 // Each active path of a segment has a place in the list of photons.
 void write_photon(uint index, Photon photon) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The ray by which a photon path goes on. The includer includes photons/sample_bsdf.glsl before.
 
-#include "photons/scattered_flags.glsl"
-
 // Takes the parts out of a closure that a limit forbids: behind the last bounce all but transparency, and behind the
 // last transparent surface transparency. Returns whether any part is left.
 bool limit_bounces(inout Closure closure, uint depth) {

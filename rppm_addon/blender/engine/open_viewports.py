@@ -29,7 +29,7 @@ def of_engine(engine: bpy.types.RenderEngine) -> Viewport:
 
 
 def is_open(engine: bpy.types.RenderEngine) -> bool:
-    """Whether there is a viewport that an engine draws."""
+    """Return whether an engine draws a viewport that is open."""
     viewport = _viewports.get(engine.as_pointer())
     return viewport is not None and viewport.engine is engine
 

@@ -13,7 +13,7 @@ ADDON = "cycles"
 
 
 def are_there() -> bool:
-    """Whether Cycles' add-on is enabled, so that scenes have its properties."""
+    """Return whether Cycles' add-on is enabled, in which case scenes have its properties."""
     return hasattr(bpy.types.Scene, "cycles")
 
 

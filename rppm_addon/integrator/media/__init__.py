@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Volumes that camera paths and photons begin in."""
+"""Participating media: those that paths begin in, and the light that they scatter."""

@@ -118,6 +118,8 @@ class PhotonBeams(Stage):
 
     def clear(self, volume: float) -> None:
         """Forget the beams of the iteration before; ``volume``: of the media, m^3."""
+        if not self.is_on:
+            return
         self._size = volume ** (1.0 / 3.0)
         self.beams.require_items(1)
         self.beams.write(np.zeros(4, np.uint32))
@@ -150,9 +152,10 @@ class PhotonBeams(Stage):
         segment: int,
     ) -> None:
         """Add the light of the beams to the straight camera rays of a segment."""
-        if not (self.is_on and context.materials.media.scatter and self.beam_count) or not self.draws(raster, segment):
+        if not (self.is_on and context.materials.media.scatter and self.beam_count):
             return
-        assert raster is not None
+        if raster is None or not self.draws(raster, segment):
+            return
         with context.timers.stage("photon beams"):
             self._mark += 1
             self._targets.write(np.zeros(4, np.uint32))

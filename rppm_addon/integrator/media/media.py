@@ -48,6 +48,8 @@ class Media(Stage):
         self._has_texels = sizes.has_texels
         self._scene: Scene | None = None
         self._box_count = 0
+        self.volume = 0.0
+        """Volume in which media lie, m^3: that of the boxes around them, or of the scene."""
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -56,39 +58,26 @@ class Media(Stage):
 
     def enter_photons(self, context: StageContext, photons: Photons, iteration: Iteration) -> None:
         """Have photons that have just left the lights begin in the media there."""
-        if self._find_media(context, iteration):
+        if self.is_on:
+            self._find_media(context, iteration)
+        if self._box_count:
             self._enter(context, photons.active, photons.blocks, "media/enter_photons.comp")
 
     def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
-        if self._find_media(context, iteration):
+        if self._box_count:
             self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")
 
-    def volume(self, context: StageContext) -> float:
-        """Return the volume in which media lie, m^3: that of the boxes around them, or of the scene."""
-        if not self.is_on:
-            return 0.0
-        low, high = context.geometry.bounds_low, context.geometry.bounds_high
-        if context.materials.media.world_scatters:
-            seen = [context.scene.camera.matrix[:3, 3], *(light.matrix[:3, 3] for light in context.scene.lights)]
-            low, high = np.minimum(low, np.min(seen, axis=0)), np.maximum(high, np.max(seen, axis=0))
-        whole = float(np.prod(np.maximum(high - low, 1e-3)))
-        if context.materials.media.world_scatters:
-            return whole
-        boxes = _boxes(context.scene, context.materials.media.materials).astype(np.float64)
-        return min(float(np.prod(boxes[:, 1] - boxes[:, 0], axis=1).sum()), whole)
-
-    def _find_media(self, context: StageContext, iteration: Iteration) -> bool:
-        """Find where media are, and what is in them, for a new scene; true where there are any."""
-        if not self.is_on:
-            return False
-        if self._scene is not context.scene or iteration.number == 1:
-            self._scene = context.scene
-            boxes = _boxes(context.scene, context.materials.media.materials)
-            self._box_count = len(boxes)
-            if self._box_count:
-                self._find(context, boxes)
-        return self._box_count > 0
+    def _find_media(self, context: StageContext, iteration: Iteration) -> None:
+        """Find where media are, and what is in them, for a new scene."""
+        if self._scene is context.scene and iteration.number > 1:
+            return
+        self._scene = context.scene
+        boxes = _boxes(context.scene, context.materials.media.materials)
+        self.volume = _volume(context, boxes)
+        self._box_count = len(boxes)
+        if self._box_count:
+            self._find(context, boxes)
 
     def _find(self, context: StageContext, boxes: np.ndarray) -> None:
         records = MEDIUM_BOX.zeros(len(boxes))
@@ -110,6 +99,21 @@ class Media(Stage):
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))
         return {"camera_position": position, "box_count": self._box_count}
+
+
+def _volume(context: StageContext, boxes: np.ndarray) -> float:
+    """Volume of boxes (n, 2, 3), but not more than that of the scene; where the world's medium scatters, that of the
+    scene with its camera and lights, m^3."""
+    low, high = context.geometry.bounds_low, context.geometry.bounds_high
+    around_everything = context.materials.media.world_scatters
+    if around_everything:
+        seen = [context.scene.camera.matrix[:3, 3], *(light.matrix[:3, 3] for light in context.scene.lights)]
+        low, high = np.minimum(low, np.min(seen, axis=0)), np.maximum(high, np.max(seen, axis=0))
+    whole = float(np.prod(np.maximum(high - low, 1e-3)))
+    if around_everything:
+        return whole
+    extents = boxes[:, 1].astype(np.float64) - boxes[:, 0]
+    return min(float(np.prod(extents, axis=1).sum()), whole)
 
 
 def _boxes(scene: Scene, materials: frozenset[int]) -> np.ndarray:

@@ -70,6 +70,7 @@ class MediumPhotonMap(Stage):
     radius = 0.0
     """Radius of the kernel, meters."""
     _shrinkage = 1.0
+    """Radii over those of the first iteration."""
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -90,7 +91,8 @@ class MediumPhotonMap(Stage):
             self.photon_count = int(self._numbers.read(np.uint32, 1)[0])
             if not self.photon_count:
                 return
-            self.radius = self._radius(context, iteration, volume)
+            self._shrinkage = shrinkage_in(3, iteration.number, context.settings.alpha)
+            self.radius = self._first_radius(context, volume) * self._shrinkage
             buckets = self._buckets
             self._grid.require_items(buckets)
             self._grid.clear()
@@ -135,11 +137,10 @@ class MediumPhotonMap(Stage):
                     },
                 )
 
-    def _radius(self, context: StageContext, iteration: Iteration, volume: float) -> float:
+    def _first_radius(self, context: StageContext, volume: float) -> float:
+        """Return the radius of the first iteration with as many photons, meters."""
         ball = _EXPECTED_PHOTONS * volume / self.photon_count
-        first = min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * context.geometry.radius)
-        self._shrinkage = shrinkage_in(3, iteration.number, context.settings.alpha)
-        return first * self._shrinkage
+        return min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * context.geometry.radius)
 
     @property
     def _buckets(self) -> int:

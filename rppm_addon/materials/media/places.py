@@ -62,9 +62,7 @@ class MediumPlaces:
         if count > MAX_MEDIA:
             scene.warn(f"{count} objects and materials have volumes of their own; the first {MAX_MEDIA} are rendered")
             copied["medium"][copied["medium"] > MAX_MEDIA] = 0
-        placed = np.concatenate([records, copied])
-        placed["medium_bits"] = max(min(count, MAX_MEDIA).bit_length(), 1)
-        return placed
+        return np.concatenate([records, copied])
 
     def media(
         self, scene: Scene, placed: Sequence[Instance], bounds: tuple[np.ndarray, np.ndarray]

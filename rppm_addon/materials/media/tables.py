@@ -59,7 +59,6 @@ class MediaTables(BufferSet):
             scene.warn(f"{len(filled)} materials have volumes; those of the first {MAX_MEDIA} are rendered")
             filled = filled[:MAX_MEDIA]
         records["medium"][filled] = 1 + np.arange(len(filled))
-        records["medium_bits"] = max(len(filled).bit_length(), 1)
         world_varies = world.variation >= Variation.PLACE_IN_OBJECT
         self._even = [_medium(Interior() if world_varies else world, evaluate), *(even[index] for index in filled)]
         varying = {index: interior for index, interior in enumerate(interiors) if interior.varies}
@@ -89,7 +88,7 @@ class MediaTables(BufferSet):
         media = MEDIUM.zeros(max(len(listed), len(self._records)))
         media[: len(listed)] = [record for record, _ in listed]
         media["material_medium"][: len(self._records)] = self._records["medium"]
-        media["medium_bits"] = self._records["medium_bits"][0]
+        media["medium_bits"] = max(int(self._records["medium"].max()).bit_length(), 1)
         self._media.upload(media)
         self._phase_functions.upload(np.concatenate([functions for _, functions in listed] + [PHASE_FUNCTION.zeros(1)]))
         self.emit = any(record["emission"].any() for record, _ in listed)

@@ -56,13 +56,6 @@ float sample_phase(float g, float u) {
     return (1.0 + g * g - ratio * ratio) / (2.0 * g);
 }
 
-vec3 around(vec3 axis, float cosine, float u) {
-    vec3 t, b;
-    tangent_frame(axis, t, b);
-    float angle = 2.0 * PI * u, sine = sqrt(max(0.0, 1.0 - cosine * cosine));
-    return normalize(sine * (cos(angle) * t + sin(angle) * b) + cosine * axis);
-}
-
 // Lengths are in mean free paths. v: how far light gets (d'Eon and Krivanek, eq. 67).
 struct Guide {
     float v;
@@ -95,8 +88,8 @@ float turn(SubsurfaceWalk walk, Medium medium, Guide guide, inout Ray ray, inout
     bool away = next_random(random) < guided.away_probability;
     vec2 u = next_random2(random);
     float cosine = guide.v - (guide.v + 1.0) * exp(-u.x * guide.logarithm);
-    vec3 direction = is_guided ? around(normal, away ? -cosine : cosine, u.y)
-                               : around(ray.direction, sample_phase(medium.anisotropy, u.x), u.y);
+    vec3 direction = is_guided ? direction_around(normal, away ? -cosine : cosine, u.y)
+                               : direction_around(ray.direction, sample_phase(medium.anisotropy, u.x), u.y);
     cosine = dot(direction, normal);
     float plain = 2.0 * PI * phase_pdf(dot(ray.direction, direction), medium.anisotropy) * guide.logarithm;
     guided.to_surface = 1.0 / (plain * (guide.v - cosine));

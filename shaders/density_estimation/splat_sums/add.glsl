@@ -3,30 +3,13 @@
 // The includer declares the storage blocks of photons[] and importons[] and the members of SUM_PARAMETERS
 // (integrator/density_estimation/splat_sums.py).
 
-#include "density_estimation/splat_sums/signs.glsl"
-buffer SplatSums;
-buffer PhotonCounts;
-
-void add_quanta(uint place, float quanta) {
-    uvec2 added = whole_quanta(quanta);
-    if (added.x > 0u && atomicAdd(sum_words[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
-    if (added.y > 0u) atomicAdd(sum_words[place + 1u], added.y);
-}
-
-void add_signed_quanta(uint place, float quanta) {
-    uvec2 added = whole_quanta(quanta);
-    if (added.x > 0u && atomicAdd(photon_counts[place], added.x) > 0xffffffffu - added.x) added.y += 1u;
-    if (added.y > 0u) atomicAdd(photon_counts[place + 1u], added.y);
-}
+#include "density_estimation/splat_sums/add_quanta.glsl"
 
 // Threads that meet here write the same mark.
 void add_splat(uint importon, uint photon, vec3 radiance, uint stands_for) {
     photons[photon].depth = photons[photon].depth | PHOTON_CONTRIBUTED;
     bool final_gather = (importons[importon].gathers & FINAL_GATHER_HIT) != 0u;
-    uint place = first_word(importon, final_gather);
-    add_quanta(place, radiance.r * parameters.quanta);
-    add_quanta(place + 2u, radiance.g * parameters.quanta);
-    add_quanta(place + 4u, radiance.b * parameters.quanta);
+    add_radiance_quanta(importon, final_gather, radiance);
     if (parameters.counting == 0u) return;
     float quanta = luminance(radiance) * parameters.quanta;
     add_signed_quanta(signed_place(importon, final_gather), photon_sign(photons[photon].path) * quanta);

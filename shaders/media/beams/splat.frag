@@ -22,7 +22,6 @@ readonly buffer PhotonBeams;
 readonly buffer BeamTargets;
 readonly buffer Camera;
 buffer Photons;
-#include "density_estimation/splat_sums/signs.glsl"
 #include "media/beams/add.glsl"
 #include "camera_paths/gbuffer/projections.glsl"
 

@@ -14,7 +14,6 @@ layout(local_size_x = 64) in;
 #include "common/geometry.glsl"
 #include "common/photon.glsl"
 #include "common/path_depth.glsl"
-#include "common/volume_bounces.glsl"
 #include "common/camera_path.glsl"
 #include "common/low_discrepancy.glsl"
 #include "common/bsdf/closure.glsl"
@@ -35,6 +34,7 @@ readonly buffer CameraPaths;
 readonly buffer Closures;
 buffer Photons;
 readonly buffer PhotonOrigins;
+#include "common/photon_depth.glsl"
 readonly buffer Importons;
 #include "density_estimation/splat_sums/collect.glsl"
 #include "density_estimation/splat_sums/add_light.glsl"
@@ -58,14 +58,6 @@ struct GatherPoint {
     uint flags;
     uint depth;
 };
-
-bool exceeds_depth(uint camera_depth, uint photon) {
-    if (!within_volume_bounces(photons[photon].bounce_counts, photons[photon].flags, 1u)) return true;
-    uint depth = camera_depth + (photons[photon].depth & DEPTH_MASK), most = iteration.max_bounces;
-    if (iteration.limits_bounces != 0u)
-        most = min(most, photon_origins[photon_path_of(photons[photon].path)].max_bounces);
-    return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;
-}
 
 // Radiance that a photon adds.
 vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {
@@ -171,7 +163,7 @@ void main() {
         uvec4 candidate = sorted_photons[next++];
         vec3 offset = uintBitsToFloat(candidate.xyz) - point.position;
         float distance2 = dot(offset, offset);
-        if (distance2 >= radius * radius || exceeds_depth(point.depth, candidate.w)) continue;
+        if (distance2 >= radius * radius || exceeds_depth(point.depth, candidate.w, 1u)) continue;
         vec3 radiance = photon_radiance(point, candidate.w, distance2, radius);
         if (!(largest(radiance) > 0.0)) continue;
         any = true;

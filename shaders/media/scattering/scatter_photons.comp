@@ -16,6 +16,7 @@ layout(local_size_x = 64) in;
 #include "common/random.glsl"
 #include "common/sampling.glsl"
 #include "common/volume_bounces.glsl"
+#include "photons/path_flags.glsl"
 uniform Parameters { ScatterInMediaParameters parameters; };
 readonly buffer Media;
 readonly buffer PhaseFunctions;
@@ -33,20 +34,13 @@ readonly buffer PhotonRange;
 buffer PhotonBeams;
 readonly buffer PhotonOrigins;
 
-// The flags of a path as those of what it stores in media.
-uint stored_flags(uint path_flags) {
-    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
-    return (path_flags & (PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_DIRECT | PHOTON_INDIRECT))
-           | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
-}
-
 // Whether media scatter no light of a path before something else has.
 bool is_hidden(PhotonPath path) {
     return (path.bounce_counts & HIDDEN_FROM_MEDIA) != 0u && bounces_of(path.depth) == 0u;
 }
 
 void store_photon(uint index, PhotonPath path, vec3 position, vec3 direction, vec3 flux, float distance) {
-    uint flags = PHOTON_ACTIVE | stored_flags(path.flags);
+    uint flags = PHOTON_ACTIVE | photon_flags(path.flags);
     photons[photon_first + active_place()] =
         Photon(position, flags, flux, 0u, -direction, distance, index | parameters.segment << PHOTON_SEGMENT_SHIFT,
                path.depth, path.bounce_counts | PHOTON_IN_MEDIUM, 0u);
@@ -64,15 +58,8 @@ void store_beam(uint index, PhotonPath path, Ray ray, float extent, float u) {
     PhotonOrigin origin = photon_origins[index];
     photon_beams[atomicAdd(beam_count, 1u)] = PhotonBeam(
         ray.origin, min(extent, parameters.longest_beam), ray.direction, photon_first + active_place(),
-        path.flux / probability, stored_flags(path.flags), index | parameters.segment << PHOTON_SEGMENT_SHIFT,
+        path.flux / probability, photon_flags(path.flags), index | parameters.segment << PHOTON_SEGMENT_SHIFT,
         path.depth, path.bounce_counts, origin.light_group, origin.max_bounces, 0u, 0u, 0u);
-}
-
-vec3 turned(vec3 direction, float cosine, float angle) {
-    vec3 t, b;
-    tangent_frame(direction, t, b);
-    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    return normalize(sine * (cos(angle) * t + sin(angle) * b) + cosine * direction);
 }
 
 // Ends a path whose light the media do not scatter, in place of the photon that it would store.
@@ -85,15 +72,15 @@ void end_path(uint index, PhotonPath path, Ray ray) {
     rays[index].maximum_distance = 0.0;
 }
 
-// Sends the path on from where a medium has scattered it. Russian roulette keeps the flux of photons even.
-void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 weight, RandomSequence random) {
+// Sends the path on from where a medium has scattered it; scattering: the coefficient there, 1/m. Russian roulette
+// keeps the flux of photons even.
+void sample_next_ray(uint index, PhotonPath path, PlaceOnRay at, vec3 weight, vec3 scattering, RandomSequence random) {
     vec3 flux = path.flux * weight;
     float u = next_random(random);
     PhaseFunction phase = sample_path_phase_function(path.flags, at, flux, u);
-    vec3 scattering = path_medium(path.flags, at).scattering;
     flux *= phase.scattering * (dot(flux, scattering) / max(dot(flux, phase.scattering), 1e-30));
     float survival = min(largest(flux) / largest(path.flux), 1.0);
-    float angle = 2.0 * PI * next_random(random);
+    float u_around = next_random(random);
     bool survives = next_random(random) < survival;
     uint bounce_counts = medium_counted(path.bounce_counts);
     bool is_first = medium_count(bounce_counts) == 1u;
@@ -103,7 +90,7 @@ void sample_next_ray(uint index, PhotonPath path, Ray ray, PlaceOnRay at, vec3 w
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
         survives = false;
     }
-    vec3 direction = turned(ray.direction, sample_phase_function(phase, u), angle);
+    vec3 direction = direction_around(at.direction, sample_phase_function(phase, u), u_around);
     // Light that lobes have sent into a medium makes no caustics beyond.
     const uint gone = PHOTON_INDIRECT | PHOTON_DIRECT | PHOTON_NOT_DIFFUSE | PHOTON_NOT_GLOSSY | PHOTON_NOT_TRANSMITTED
                       | PHOTON_CASTS_SHADOWS | PHOTON_SCATTERED_BY_LOBE >> PHOTON_HISTORY_SHIFT;
@@ -146,7 +133,7 @@ void main() {
     PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
     vec3 weight = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance) / flight.pdf;
     float distance = photon_differentials[index].before + flight.distance;
-    store_photon(index, path, position, ray.direction, path.flux * weight * path_medium(path.flags, at).scattering,
-                 distance);
-    sample_next_ray(index, path, ray, at, weight, random);
+    vec3 scattering = path_medium(path.flags, at).scattering;
+    store_photon(index, path, position, ray.direction, path.flux * weight * scattering, distance);
+    sample_next_ray(index, path, at, weight, scattering, random);
 }

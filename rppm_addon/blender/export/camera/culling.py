@@ -67,7 +67,7 @@ class Culling:
         return np.array([tuple(corner) for corner in source.bound_box]), by_camera, by_distance
 
     def _is_outside(self, corners: np.ndarray) -> bool:
-        """Whether they lie beyond an edge of the frame by more than the margin, a fraction of the frame."""
+        """Return whether corners lie beyond an edge of the frame by more than the margin, a fraction of the frame."""
         camera = self._camera
         x, y, z = (corners @ self._to_camera[:3, :3].T + self._to_camera[:3, 3]).T
         left, right, bottom, top = camera.window

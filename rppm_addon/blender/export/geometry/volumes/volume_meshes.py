@@ -27,7 +27,7 @@ class GridSource:
 
     @property
     def is_gas(self) -> bool:
-        """Whether it is the domain of gas."""
+        """Whether the object is a fluid domain of gas, and no volume object."""
         return self.source.type == "MESH"
 
     def as_pointer(self) -> int:

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The includer includes common/photon.glsl before.
+// Flags of photon paths. The includer includes common/photon.glsl before.
+
+// The flags of a path as those of a photon.
+uint photon_flags(uint path_flags) {
+    const uint history = PHOTON_SCATTERED_BY_LOBE | PHOTON_CAUSTIC;
+    return (path_flags & PHOTON_FLAG_MASK & ~(history | history >> PHOTON_HISTORY_SHIFT))
+           | ((path_flags << PHOTON_HISTORY_SHIFT) & history);
+}
 
 // The flags of a path whose last scattering was diffuse or not: diffuse surfaces make caustics of light that other
 // lobes sent there.
