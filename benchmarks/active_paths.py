@@ -42,7 +42,7 @@ def measure(scene: Path, context: Context, library: ProgramLibrary, options: arg
     """A row of the table. Raises AssertionError when the pictures differ in a bit."""
     clock, mappers = Clock(context), {}
     for name in ("all", "active"):
-        loaded = load_scene(scene)
+        loaded = load_scene(scene).expanded()
         loaded.camera = camera_at_resolution(loaded.camera, options.size, options.size)
         loaded.settings.photons = options.photons
         mappers[name] = ProgressivePhotonMapper(context, library)

@@ -35,7 +35,8 @@ def with_light(scene: Scene, name: str) -> Scene:
     values = {"strength": np.full(3, 10.0), "graph": None} | LIGHTS[name]
     if "radius" not in values:
         corners = [
-            scene.meshes[item.mesh].positions @ item.matrix[:3, :3].T + item.matrix[:3, 3] for item in scene.instances
+            scene.meshes[item.mesh].positions @ item.matrix[:3, :3].T + item.matrix[:3, 3]
+            for item in scene.expanded().instances
         ]
         values["radius"] = 0.005 * 0.5 * float(np.linalg.norm(np.ptp(np.concatenate(corners), axis=0)))
     strongest = max(scene.lights, key=lambda light: float(np.mean(light.strength)))

@@ -55,7 +55,7 @@ def main() -> None:
     print("| scene |", " | ".join(ways), "|")
     print("|---|" + "---:|" * len(ways))
     for path in options.scenes:
-        scene = load_scene(path)
+        scene = load_scene(path).expanded()
         scene.camera = camera_at_resolution(scene.camera, options.size, options.size)
         scene.settings.photons = options.photons
         kept = options.references / f"{path.stem}_{options.size}.npy"

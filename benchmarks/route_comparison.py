@@ -27,7 +27,7 @@ def parse(description: str, arguments: list[str] | None, iterations: int) -> arg
 def named_scenes(options: argparse.Namespace) -> Iterator[tuple[str, Scene]]:
     """The scenes asked for, without any a box with a glass and a mirror sphere, as they are to be rendered."""
     for path in options.scenes or [None]:
-        scene = scenes.room(options.size) if path is None else load_scene(path)
+        scene = scenes.room(options.size) if path is None else load_scene(path).expanded()
         camera = camera_at_resolution(dataclasses.replace(scene.camera, crop=None), options.size, options.size)
         settings = dataclasses.replace(scene.settings, photons=options.photons)
         yield (

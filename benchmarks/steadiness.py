@@ -45,7 +45,7 @@ def frames_of(sample: str, step: float, count: int) -> Iterator[Scene]:
     for k in range(count):
         frame, part = divmod(FIRST_FRAME + step * k, 1.0)
         scene.frame_set(int(frame), subframe=part)
-        yield export_scene(bpy.context.evaluated_depsgraph_get())
+        yield export_scene(bpy.context.evaluated_depsgraph_get()).expanded()
 
 
 class Pictures:

@@ -215,7 +215,7 @@ def measure(options: argparse.Namespace, name: str, context: Context, library: P
     """Figures and pictures of a scene."""
     size, clock, marks = options.size, Clock(context), options.seconds
     load(name)
-    scene = export_scene(bpy.context.evaluated_depsgraph_get())
+    scene = export_scene(bpy.context.evaluated_depsgraph_get()).expanded()
     scene.camera = camera_at_resolution(scene.camera, *size)
     scene.settings = dataclasses.replace(
         scene.settings, passes=(), iterations=1024, time_limit=0.0, seed=SEED, photons=0

@@ -195,14 +195,14 @@ class SceneStore:
         saved = self._saved / f"{name}.npz"
         try:
             if saved.exists() and not (blend.exists() and blend.stat().st_mtime > saved.stat().st_mtime):
-                return load_scene(saved)
+                return load_scene(saved).expanded()
         except RppmError as error:
             log.warning("%s", error)
         problem = _export(blend, saved)
         if problem:
             log.warning("%s is left out: %s", name, problem)
             return None
-        return load_scene(saved)
+        return load_scene(saved).expanded()
 
 
 def room_scene(triangle_count: int) -> Scene:

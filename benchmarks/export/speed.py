@@ -94,7 +94,7 @@ class Device:
             mock.patch.object(resolve, "build", timed(resolve, resolve.build)),
             mock.patch.object(geometry._gather, "run", timed(geometry._gather, geometry._gather.run)),
         ):
-            self._mapper.update(scene)
+            self._mapper.update(scene.expanded())
             self.context.finish()
         whole = np.array([time.perf_counter(), time.process_time()]) - started
         self._mapper.device_scene._build_deep_cubemap = lambda: None
@@ -173,7 +173,7 @@ def measure(make: Callable[[int], None], size: int, frames: int, device: Device)
     last = sync.scene
     return {
         "triangles": last.triangle_count,
-        "instances": len(last.instances),
+        "instances": last.instance_count,
         "frames": frames,
         "stages": watch.figures(),
     }

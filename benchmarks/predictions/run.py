@@ -106,12 +106,12 @@ def main() -> int:
         if options.measure or options.page:
             stored = {name: Demand.of(values) for name, values in json.loads(FILE.read_text(encoding="utf-8")).items()}
         if options.measure:
-            print(measure(load_scene(options.scene), options.pixels, stored, options.iterations))
+            print(measure(load_scene(options.scene).expanded(), options.pixels, stored, options.iterations))
             return 0
         from .page import write_page  # late: needs the lab of drivers
 
         if not options.page:
-            stored = count(load_scene(options.scene))
+            stored = count(load_scene(options.scene).expanded())
             FILE.write_text(json.dumps({name: d.as_dict() for name, d in stored.items()}, indent=1) + "\n", "utf-8")
         write_page(stored, PIXELS)
     except (RppmError, OSError) as error:

@@ -6,7 +6,17 @@ from .images import Image
 from .light_linking import ALL_SETS, LIGHT_SETS, LightLinking
 from .lights import UNLIMITED_BOUNCES, Light, LightKind, Mist, World
 from .materials import Material
-from .meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape, Particle, RayVisibility
+from .meshes import (
+    AttributeDomain,
+    Instance,
+    InstanceArray,
+    Mesh,
+    MeshAttribute,
+    MeshShape,
+    Particle,
+    ParticleArray,
+    RayVisibility,
+)
 from .motion import CameraMovement, Deformation, Movement, Shutter
 from .moving_scene import MovingScene
 from .node_graphs import AovOutput, Link, NodeGraph, ShaderNode
@@ -40,6 +50,7 @@ __all__ = [
     "FirstPhotonHits",
     "Image",
     "Instance",
+    "InstanceArray",
     "Light",
     "LightKind",
     "LightLinking",
@@ -55,6 +66,7 @@ __all__ = [
     "Panorama",
     "PanoramaKind",
     "Particle",
+    "ParticleArray",
     "PixelFilter",
     "RayVisibility",
     "RenderSettings",

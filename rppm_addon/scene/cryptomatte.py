@@ -128,7 +128,8 @@ def names_in(layer: str, scene: Scene) -> list[str]:
     """All names that a layer of a scene may have, each once."""
     if layer == MATERIALS:
         return list(dict.fromkeys([*(material.name for material in scene.materials), DEFAULT_MATERIAL]))
-    objects = dict.fromkeys(instance.object_name for instance in scene.instances)
+    many = (array.first for array in scene.instance_arrays)
+    objects = dict.fromkeys(instance.object_name for instance in (*scene.instances, *many))
     return list(objects if layer == OBJECTS else dict.fromkeys(asset_of(scene, name) for name in objects))
 
 

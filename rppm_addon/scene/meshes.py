@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Indexed geometry and its placements."""
 
+import dataclasses
 import enum
+import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -173,3 +176,110 @@ class Instance:
     """Cosine up to which shadow rays begin on the surface that the normals describe, not on its triangles."""
     terminator_shading_offset: float = field(default=0.0, metadata=declared(minimum=0.0, maximum=1.0))
     """How much earlier than at the horizon the light of lights fades out; 1 is at 45 degrees."""
+
+
+@dataclass(slots=True, eq=False)
+class ParticleArray:
+    """Outputs of the Particle Info node for the particles that the instances of an array stand for."""
+
+    index: np.ndarray = field(metadata=declared("instances", finite=False))
+    random: np.ndarray = field(metadata=declared("instances", finite=False))
+    age: np.ndarray = field(metadata=declared("instances", finite=False))
+    """Frames."""
+    lifetime: np.ndarray = field(metadata=declared("instances", finite=False))
+    """Frames."""
+    size: np.ndarray = field(metadata=declared("instances", finite=False))
+    location: np.ndarray = field(metadata=declared("instances", 3, finite=False))
+    velocity: np.ndarray = field(metadata=declared("instances", 3, finite=False))
+    angular_velocity: np.ndarray = field(metadata=declared("instances", 3, finite=False))
+
+    def __len__(self) -> int:
+        return len(self.index)
+
+    @classmethod
+    def joined(cls, arrays: Sequence["ParticleArray"]) -> "ParticleArray":
+        """The particles of several arrays, one array after the other."""
+        names = [member.name for member in dataclasses.fields(cls)]
+        return cls(*(np.concatenate([getattr(array, name) for array in arrays]) for name in names))
+
+    def rows(self, chosen: np.ndarray | slice) -> "ParticleArray":
+        """The particles of these indices."""
+        return ParticleArray(*(getattr(self, member.name)[chosen] for member in dataclasses.fields(self)))
+
+    def __getitem__(self, index: int) -> Particle:
+        return self.rows(slice(index, index + 1)).particles()[0]
+
+    def particles(self) -> list[Particle]:
+        """The particles one by one."""
+        numbers = (self.index, self.random, self.age, self.lifetime, self.size)
+        vectors = (self.location, self.velocity, self.angular_velocity)
+        columns = [column.tolist() for column in numbers]
+        columns += [list(map(tuple, column.tolist())) for column in vectors]
+        return list(map(Particle, *columns))
+
+
+@dataclass(slots=True, eq=False, weakref_slot=True)
+class InstanceArray:
+    """Many instances of one mesh that share all but what arrays say of each. It is not changed once it is made."""
+
+    first: Instance
+    """The first of them, whose mesh, materials and other members all have."""
+    places: np.ndarray = field(metadata=declared("instances", types="int32", minimum=0))
+    """(instances,) int32, ascending, the index of each among all instances of the scene."""
+    matrices: np.ndarray = field(metadata=declared("instances", 3, 4, types="float32", finite=False))
+    """(instances, 3, 4) float32, object to world, without the last row 0, 0, 0, 1."""
+    randoms: np.ndarray = field(metadata=declared("instances", types="float64", finite=False))
+    """(instances,) float64, 0 to 1, the random number of each."""
+    particles: ParticleArray | None = None
+    """None: they stand for no particles."""
+    attributes: dict[str, np.ndarray] = field(default_factory=dict, metadata=declared(finite=False))
+    """By name, (instances, channels) float64, values of the attributes that each has as a whole. An empty dictionary:
+    all have the attributes of the first."""
+
+    def __len__(self) -> int:
+        return len(self.places)
+
+    def instances(self) -> list[Instance]:
+        """The instances one by one, the same objects at each call."""
+        known = _expanded.get(self)
+        if known is None:
+            known = _expanded[self] = self._expand()
+        return known
+
+    def _expand(self) -> list[Instance]:
+        shared, count = self.first, len(self)
+        matrices = np.zeros((count, 4, 4))
+        matrices[:, :3] = self.matrices
+        matrices[:, 3, 3] = 1.0
+        particles = [None] * count if self.particles is None else self.particles.particles()
+        attributes = [shared.attributes] * count
+        if self.attributes:
+            columns = [list(map(tuple, column.tolist())) for column in self.attributes.values()]
+            attributes = [dict(zip(self.attributes, row, strict=True)) for row in zip(*columns, strict=True)]
+        return [
+            Instance(
+                shared.mesh,
+                matrix,
+                shared.materials,
+                shared.object_name,
+                shared.object_index,
+                shared.color,
+                random,
+                particle,
+                shared.visibility,
+                shared.holdout,
+                shared.shadow_catcher,
+                own_attributes,
+                shared.light_group,
+                shared.linking,
+                shared.terminator_geometry_offset,
+                shared.terminator_shading_offset,
+            )
+            for matrix, random, particle, own_attributes in zip(
+                matrices, self.randoms.tolist(), particles, attributes, strict=True
+            )
+        ]
+
+
+_expanded: weakref.WeakKeyDictionary[InstanceArray, list[Instance]] = weakref.WeakKeyDictionary()
+"""Instances of arrays that were asked for."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene: everything a render needs."""
 
+import dataclasses
 import logging
 from dataclasses import dataclass, field
 
@@ -8,10 +9,11 @@ import numpy as np
 
 from .camera import Camera
 from .common.declared import declared
+from .errors import SceneError
 from .images import Image
 from .lights import Light, World
 from .materials import Material
-from .meshes import Instance, Mesh
+from .meshes import Instance, InstanceArray, Mesh
 from .motion import Shutter
 from .settings import RenderSettings
 
@@ -25,6 +27,7 @@ class Scene:
     camera: Camera
     meshes: list[Mesh] = field(default_factory=list)
     instances: list[Instance] = field(default_factory=list)
+    """Instances that are in no array. Indices into the instances count those of arrays as well (expanded())."""
     materials: list[Material] = field(default_factory=list)
     lights: list[Light] = field(default_factory=list)
     world: World = field(default_factory=World)
@@ -42,6 +45,8 @@ class Scene:
     """Motion while the picture is taken; None where nothing moves."""
     neighbors: Shutter | None = None
     """Where things are in the frames before (time 0) and after (1), for the pass Vector; its curve says nothing."""
+    instance_arrays: list[InstanceArray] = field(default_factory=list)
+    """Further instances, each array with many of one mesh. The renderer takes scenes without arrays."""
     asset_names: dict[str, str] = field(default_factory=dict)
     """Names of topmost parents, by the names of the objects that have one; only where CryptoAsset is rendered."""
     stamps: dict[str, str] = field(default_factory=dict)
@@ -68,4 +73,35 @@ class Scene:
     @property
     def triangle_count(self) -> int:
         """Triangles with all instances expanded."""
-        return sum(self.meshes[instance.mesh].triangle_count for instance in self.instances)
+        many = sum(self.meshes[array.first.mesh].triangle_count * len(array) for array in self.instance_arrays)
+        return many + sum(self.meshes[instance.mesh].triangle_count for instance in self.instances)
+
+    @property
+    def instance_count(self) -> int:
+        """Instances, those of arrays included."""
+        return len(self.instances) + sum(map(len, self.instance_arrays))
+
+    def expanded(self) -> "Scene":
+        """The scene with the instances of arrays among the others, each in its place, and without arrays; the scene
+        itself where it has none.
+
+        Arrays that scenes share give them the same instances. Raises SceneError where two instances have one place, or
+        none is in one.
+        """
+        if not self.instance_arrays:
+            return self
+        count = self.instance_count
+        places = np.concatenate([array.places for array in self.instance_arrays])
+        is_free = np.ones(count, bool)
+        if len(places) and not (places.min() >= 0 and places.max() < count):
+            raise SceneError(f"an instance of an array has a place that is none of {count}; export the scene again")
+        is_free[places] = False
+        if is_free.sum() != len(self.instances):
+            raise SceneError("two instances of arrays have the same place; export the scene again")
+        instances: list[Instance] = [None] * count  # type: ignore[list-item]
+        members = [(np.flatnonzero(is_free), self.instances)]
+        members += [(array.places, array.instances()) for array in self.instance_arrays]
+        for indices, placed in members:
+            for index, instance in zip(indices.tolist(), placed, strict=True):
+                instances[index] = instance
+        return dataclasses.replace(self, instances=instances, instance_arrays=[])

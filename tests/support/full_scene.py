@@ -10,10 +10,12 @@ from rppm_addon.scene.meshes import (
     AttributeDomain,
     Dicing,
     Instance,
+    InstanceArray,
     Mesh,
     MeshAttribute,
     MeshShape,
     Particle,
+    ParticleArray,
     RayVisibility,
 )
 from rppm_addon.scene.motion import CameraMovement, Deformation, Movement, Shutter
@@ -62,6 +64,16 @@ def full_scene() -> Scene:
                 attributes={"a": (1.0, 2.0)},
                 linking=LightLinking(receiver_light_set=2, light_set_membership=-3),
             ),
+        ],
+        instance_arrays=[
+            InstanceArray(
+                Instance(1, np.eye(4), [1], "many", 4, particle=Particle(index=1.0)),
+                np.array([1, 3], np.int32),
+                np.stack([np.eye(4), np.diag([2.0, 1.0, 1.0, 1.0])])[:, :3].astype(np.float32),
+                np.array([0.25, 0.75]),
+                ParticleArray(*rng.random((5, 2)), *rng.random((3, 2, 3), np.float32)),
+                {"a": rng.random((2, 3))},
+            )
         ],
         materials=[
             material("a", Lobe(LobeKind.GLASS, 0.5, (1, 0, 0), roughness=0.1), absorption=np.array([1, 2, 3.0])),

@@ -28,7 +28,7 @@ class _Surfaces:
 
     def __init__(self, scene: Scene) -> None:
         corners, names = [], []
-        for instance in scene.instances:
+        for instance in scene.expanded().instances:
             mesh = scene.meshes[instance.mesh]
             matrix = instance.matrix
             world = mesh.positions.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]

@@ -31,11 +31,15 @@ UNSEEN = frozenset(
 iteration finds."""
 AFTER_FILM = frozenset({"denoising_prefilter", "denoising_quality"})
 """Settings that say what becomes of a picture once all iterations are in it."""
-_NOT_RENDERED = frozenset({"settings", "stamps", "warnings"})
+_NOT_RENDERED = frozenset({"settings", "stamps", "warnings", "instance_arrays"})
 
 
 def scene_digests(scene: Scene) -> dict[str, str]:
-    """A digest, hexadecimal, of each member of a scene: equal where the members are, arrays bit for bit."""
+    """A digest, hexadecimal, of each member of a scene: equal where the members are, arrays bit for bit.
+
+    Instances count one by one, whether they are in arrays or not.
+    """
+    scene = scene.expanded()
     known: dict[int, str] = {}
 
     def keep(array: np.ndarray) -> str:

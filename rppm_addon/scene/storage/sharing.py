@@ -15,7 +15,7 @@ from ..meshes import Instance
 from ..scene import Scene
 from .documents import field_names
 
-LISTS = ("meshes", "instances", "materials", "lights", "images")
+LISTS = ("meshes", "instances", "instance_arrays", "materials", "lights", "images")
 _LARGE = {"meshes", "images"}
 _MEMBERS = ("camera", "world", "settings")
 _SMALL = 1 << 10

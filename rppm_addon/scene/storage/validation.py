@@ -19,7 +19,7 @@ import numpy as np
 from ..camera import Camera, Texels
 from ..common.declared import FLOAT_MAX, Declared, declared_of
 from ..errors import SceneError
-from ..meshes import SMOOTH_NORMALS, AttributeDomain, Mesh
+from ..meshes import SMOOTH_NORMALS, AttributeDomain, InstanceArray, Mesh
 from ..motion import CameraMovement, Deformation, Movement, Shutter
 from ..node_graphs import Link, NodeGraph
 from ..scene import Scene
@@ -35,7 +35,11 @@ _MIN_STRETCH = 1e-9
 def check_scene(scene: Scene) -> None:
     """Raise SceneError, naming member and field, unless the scene is what its declaration says."""
     lengths = {name: len(getattr(scene, name)) for name in _LISTS if isinstance(getattr(scene, name), list)}
+    if isinstance(scene.instance_arrays, list) and "instances" in lengths:
+        arrays = [array for array in scene.instance_arrays if isinstance(array, InstanceArray)]
+        lengths["instances"] += sum(len(array.places) for array in arrays if isinstance(array.places, np.ndarray))
     _Gate(lengths).records(Scene, [scene], lambda _: "")
+    scene = scene.expanded()
     if scene.camera.texels is not None:
         _check_texels(scene, scene.camera.texels)
     for name, shutter in {"shutter": scene.shutter, "neighbors": scene.neighbors}.items():
@@ -304,6 +308,19 @@ def _check_mesh(mesh: Mesh, label: str) -> None:
             raise SceneError(f'{label}: attributes["{name}"] must have {_MAX_CHANNELS} numbers for each corner')
 
 
+def _check_instance_array(array: InstanceArray, label: str) -> None:
+    count = len(array)
+    if count == 0 or (np.diff(array.places) <= 0).any():
+        raise SceneError(f"{label}: places must ascend, and there must be one")
+    if array.particles is not None and len(array.particles) != count:
+        raise SceneError(f"{label}: there are {len(array.particles)} particles; there must be {count}")
+    for name, values in array.attributes.items():
+        if values.ndim != 2 or len(values) != count or not 1 <= values.shape[1] <= _MAX_CHANNELS:
+            raise SceneError(
+                f'{label}: attributes["{_escaped(name)}"] has the shape {values.shape}; there are {count} instances'
+            )
+
+
 def _check_graph(graph: NodeGraph, label: str) -> None:
     for place, node in enumerate(graph.nodes):
         _check_links(node.inputs.values(), place, f'{label}: nodes[{place}] "{_escaped(node.name or node.kind)}"')
@@ -384,6 +401,7 @@ def _check_deformation(bent: Deformation, mesh: Mesh, label: str) -> None:
 
 _EXTRA: dict[type, Callable[[Any, str], None]] = {
     Mesh: _check_mesh,
+    InstanceArray: _check_instance_array,
     NodeGraph: _check_graph,
     Camera: _check_camera,
     Movement: _check_times,

@@ -74,6 +74,7 @@ class Renderer:
             on_snapshot: receives each of ``snapshots`` and the picture at that time.
             continuation: where the render begins, and who receives its state.
         """
+        scene = scene.expanded()
         recovery = DeviceLossRecovery(continuation)
         pictures = FinishedPictures(scene.settings, self._denoiser, on_progress, on_snapshot)
         while True:
@@ -139,6 +140,7 @@ class Renderer:
         its bytes by buffer. Raises the errors of scene/errors.py.
         """
         check_scene(scene)
+        scene = scene.expanded()
         with self._context.moderngl:
             mapper = self._open_mapper()
             mapper.build_deep_cubemap(scene)
@@ -149,6 +151,7 @@ class Renderer:
     def memory(self, scene: Scene) -> Memory:
         """Bytes on the device that rendering the scene takes. Raises the errors of scene/errors.py."""
         check_scene(scene)
+        scene = scene.expanded()
         with self._context.moderngl:
             mapper = self._open_mapper()
             mapper.build(scene)

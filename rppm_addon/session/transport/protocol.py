@@ -11,7 +11,7 @@ import struct
 from collections.abc import Mapping
 from typing import Any, BinaryIO, TypeAlias
 
-VERSION = 7
+VERSION = 8
 LONGEST_MESSAGE = 1 << 28
 _Fields: TypeAlias = dict[str, Any]
 """Types, or tuples of types, of what a message has beside its kind."""

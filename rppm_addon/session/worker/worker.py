@@ -126,7 +126,8 @@ class Worker:
             self._whole.clear()
             self._receiver.learn(message["document"], unpack(message["arrays"]))
         elif kind == "show":
-            message["scene"] = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
+            scene = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
+            message["scene"] = scene.expanded()
             _, session = self._sessions.get(message["session"], (None, None))
             if isinstance(session, ViewportRenderer):
                 session.expect(message["scene"], message["generation"])

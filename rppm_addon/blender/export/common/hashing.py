@@ -20,11 +20,16 @@ def hashed(number: int) -> float:
     return values[2] / 0xFFFFFFFF
 
 
-def hashed_up_to(count: int) -> np.ndarray:
-    """(count,) float32, what hashed() gives of 0, 1, 2 ..."""
+def hashed_numbers(numbers: np.ndarray) -> np.ndarray:
+    """(n,) float64, what hashed() gives of each of (n,) whole numbers from 0 on."""
     start = np.uint32((0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF)
-    values = [start + np.arange(count, dtype=np.uint32), np.full(count, start), np.full(count, start)]
+    values = [start + numbers.astype(np.uint32), np.full(len(numbers), start), np.full(len(numbers), start)]
     for first, second, bits in _MIXED:
         rotated = (values[second] << np.uint32(bits)) | (values[second] >> np.uint32(32 - bits))
         values[first] = (values[first] ^ values[second]) - rotated
-    return (values[2] / np.float64(0xFFFFFFFF)).astype(np.float32)
+    return values[2] / np.float64(0xFFFFFFFF)
+
+
+def hashed_up_to(count: int) -> np.ndarray:
+    """(count,) float32, what hashed() gives of 0, 1, 2 ..."""
+    return hashed_numbers(np.arange(count)).astype(np.float32)

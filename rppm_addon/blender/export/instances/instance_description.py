@@ -30,6 +30,12 @@ class Instancer(NamedTuple):
     """Light linking of its instances; None where lights are not linked."""
     has_particles: bool
 
+    @property
+    def passed_on(self) -> tuple:
+        """All that its instances have of it, which is equal where instancers pass on the same."""
+        visibility = int(self.layer_visibility)  # flags of their own take long to hash
+        return visibility, self.holdout, self.shadow_catcher, self.light_group, self.linking, self.has_particles
+
 
 class InstanceDescription(NamedTuple):
     """All members of a scene.Instance that do not change from one placement of an object to the next."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects that others multiply, as collections, particles, faces and geometry nodes do."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 import numpy as np
@@ -10,6 +10,7 @@ from ..camera.culling import Selection
 from ..view_layer.visibility import is_seen
 from .converted_curves import ConvertedCurves
 from .instance_description import InstanceDescription, Instancer
+from .instance_groups import InstanceGroup, InstanceGroups
 from .instance_reader import CONVERTED_TYPES, InstanceReader
 from .particles import ParticleTable
 from .placements import Identity, Placements, identity_of
@@ -28,22 +29,32 @@ class _Prototype:
     """Whether its materials read attributes that instances may have of their own."""
     curve: int = 0
     """Address of the original object if the mesh is that of a curve or the like, or else 0."""
-    instancer: Instancer | None = None
-    """Instancer of the previous instance."""
-    multiplied: InstanceDescription | None = None
-    """Description of what that instancer multiplies."""
+    owners: set[int] = field(default_factory=set)
+    """session_uid of the objects that multiply it."""
+    multiplied: dict[tuple, InstanceGroup] = field(default_factory=dict)
+    """Groups of its instances, by what instancers pass on to them."""
 
 
 class MultipliedObjects:
     """Places instances of objects that others multiply; the instances of a mesh share one description."""
 
     def __init__(
-        self, reader: InstanceReader, placements: Placements, curves: ConvertedCurves, particles: ParticleTable
+        self,
+        reader: InstanceReader,
+        placements: Placements,
+        curves: ConvertedCurves,
+        particles: ParticleTable,
+        groups: InstanceGroups,
+        may_have_hair: bool,
     ) -> None:
+        """may_have_hair: whether objects may have hair, which arrays do not describe."""
         self._reader = reader
         self._placements = placements
         self._curves = curves
         self._particles = particles
+        self._groups = groups
+        self._may_have_hair = may_have_hair
+        self._nothing = groups.open(None)
         self._instancers: dict[int, Instancer | None] = {}
         """Instancers by their addresses; None where the viewport does not show them."""
         self._prototypes: dict[tuple[int, int], _Prototype] = {}
@@ -51,12 +62,17 @@ class MultipliedObjects:
 
     def export(
         self,
+        number: int,
         entry: bpy.types.DepsgraphObjectInstance,
         source: bpy.types.Object,
         matrix: np.ndarray,
         selection: Selection,
     ) -> None:
-        """Place the object of an entry of a depsgraph at a matrix (4, 4). Raises Unfinished when the slice is over."""
+        """Place the object of an entry of a depsgraph, of a number, at a matrix (4, 4), float32.
+
+        Where arrays describe the instances that the entry's instancer has of the object, the groups take them. Raises
+        Unfinished when the slice is over.
+        """
         parent, data = entry.parent, source.data
         address = parent.as_pointer()
         if address not in self._instancers:
@@ -66,18 +82,41 @@ class MultipliedObjects:
         prototype = self._prototypes.get(key)
         if prototype is None:
             prototype = self._prototypes[key] = self._begin_prototype(source)
-        is_light = source.type == "LIGHT"
-        if instancer is None or not entry.show_self or not (is_seen(instancer.visibility) or is_light):
-            return
-        if selection.culling.leaves_out(source, matrix):
-            return
-        identity = identity_of(entry, source.original, parent.original) if self._placements.identify else ()
-        if is_light:
+        kind = source.type
+        is_shown = instancer is not None and (is_seen(instancer.visibility) or kind == "LIGHT")
+        if kind == "MESH" and self._may_group(source, selection) and (entry.show_self or not is_shown):
+            group = self._group_of(prototype, entry, source, instancer) if is_shown else self._nothing
+            if group is self._nothing or not (prototype.curve or prototype.reads_instancer):
+                self._groups.assign((*key, address), number, entry, group)
+                return
+        matrix = matrix.astype(np.float64)
+        if is_shown and entry.show_self and not selection.culling.leaves_out(source, matrix):
+            self._place(prototype, entry, source, matrix, instancer)
+
+    def _may_group(self, source: bpy.types.Object, selection: Selection) -> bool:
+        """Whether arrays may describe all that instances of a mesh object bring."""
+        if self._placements.identify or selection.culling.is_used:
+            return False
+        return not (self._may_have_hair and len(source.particle_systems) > 0)
+
+    def _place(
+        self,
+        prototype: _Prototype,
+        entry: bpy.types.DepsgraphObjectInstance,
+        source: bpy.types.Object,
+        matrix: np.ndarray,
+        instancer: Instancer,
+    ) -> None:
+        """Place the object of an entry by itself."""
+        identity = identity_of(entry, source.original, entry.parent.original) if self._placements.identify else ()
+        if source.type == "LIGHT":
             light = self._reader.light(source, matrix, instancer)
             if light is not None:
                 self._placements.add_light(light, prototype.uid, identity)
         elif source.type == "MESH":
-            self._place_mesh(prototype, entry, source, matrix, instancer, identity)
+            description = self._group_of(prototype, entry, source, instancer).description
+            if description is not None:
+                self._place_mesh(prototype, description, entry, source, matrix, instancer, identity)
         else:
             self._place_other(entry, source, matrix, instancer, identity)
 
@@ -94,15 +133,14 @@ class MultipliedObjects:
         self._reader.faceless.is_multiplied(uid)
         return _Prototype(uid)
 
-    def _place_mesh(
+    def _group_of(
         self,
         prototype: _Prototype,
         entry: bpy.types.DepsgraphObjectInstance,
         source: bpy.types.Object,
-        matrix: np.ndarray,
         instancer: Instancer,
-        identity: Identity,
-    ) -> None:
+    ) -> InstanceGroup:
+        """The group of the instances of an entry's mesh, which is described when it is met first."""
         reader = self._reader
         if not prototype.is_described:
             description = prototype.description = reader.describe(source, entry)
@@ -112,11 +150,30 @@ class MultipliedObjects:
                 prototype.curve = original.as_pointer() if original.type in CONVERTED_TYPES else 0
             prototype.is_described = True
         if prototype.description is None:
-            return
-        if prototype.instancer is not instancer:
+            return self._nothing
+        if instancer.uid not in prototype.owners:
             reader.add_owner(prototype.description, instancer)
-            prototype.instancer, prototype.multiplied = instancer, prototype.description.multiplied_by(instancer)
-        description = prototype.multiplied
+            prototype.owners.add(instancer.uid)
+        passed_on = instancer.passed_on
+        if passed_on not in prototype.multiplied:
+            description = prototype.description.multiplied_by(instancer)
+            prototype.multiplied[passed_on] = self._groups.open(
+                description, self._particles if instancer.has_particles else None
+            )
+        return prototype.multiplied[passed_on]
+
+    def _place_mesh(
+        self,
+        prototype: _Prototype,
+        description: InstanceDescription,
+        entry: bpy.types.DepsgraphObjectInstance,
+        source: bpy.types.Object,
+        matrix: np.ndarray,
+        instancer: Instancer,
+        identity: Identity,
+    ) -> None:
+        """Place an instance by itself."""
+        reader = self._reader
         if prototype.curve:
             self._curves.add_mesh(prototype.curve, matrix)
         instance = description.place(

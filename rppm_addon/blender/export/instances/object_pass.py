@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One pass over the instances of a depsgraph."""
 
+import itertools
 from collections.abc import Callable, Iterator
 
 import bpy
@@ -12,6 +13,7 @@ from ..common.report import Report
 from ..context import ExportContext
 from ..shading.nodes.material_table import MaterialTable
 from .converted_curves import ConvertedCurves
+from .instance_groups import InstanceGroups
 from .instance_reader import InstanceReader
 from .mesh_table import MeshTable
 from .multiplied_objects import MultipliedObjects
@@ -21,8 +23,8 @@ from .particles import ParticleTable
 from .placements import Placed, Placements
 from .single_objects import SingleObjects
 
-_AT_ONCE = 32
-"""Instances between which nobody looks at the clock."""
+_AT_ONCE = 128
+"""Entries between which nobody looks at the clock."""
 
 
 class InstanceWalk:
@@ -30,37 +32,37 @@ class InstanceWalk:
 
     def __init__(self, report: Report) -> None:
         self._report = report
-        self._matrices: np.ndarray | None = None
+        self.matrices = np.zeros((0, 4, 4), np.float32)
+        """(entries, 4, 4) float32, object to world."""
+        self._is_begun = False
         self.done = 0
         """Number of entries that have been dealt with."""
         self.count = 0
         """Number of all entries; 0 before the first slice."""
 
-    def entries(
+    def chunks(
         self, depsgraph: bpy.types.Depsgraph
-    ) -> Iterator[tuple[bpy.types.DepsgraphObjectInstance, bpy.types.Object, np.ndarray]]:
-        """Yield each entry that was not dealt with, its evaluated object and its matrix (4, 4), object to world.
+    ) -> Iterator[Iterator[tuple[int, bpy.types.DepsgraphObjectInstance]]]:
+        """Yield the entries that were not dealt with, some at a time, each with its number.
 
-        An entry counts as dealt with when the next is asked for, and is valid only until then, as Blender reuses its
-        memory. Raises Unfinished when the slice is over, and ExportStopped.
+        Entries count as dealt with when the next ones are asked for. An entry is valid only until the next, as Blender
+        reuses its memory. Raises Unfinished when the slice is over, and ExportStopped.
         """
-        if self._matrices is None:
-            self._matrices = instance_matrices(depsgraph)
-            self.count = len(self._matrices)
+        if not self._is_begun:
+            self.matrices, self._is_begun = instance_matrices(depsgraph), True
+            self.count = len(self.matrices)
         if self.done == self.count:
             return
-        start, slices, matrices = self.done, self._report.slices, self._matrices
-        for number, entry in enumerate(depsgraph.object_instances):
-            if number < start:  # Blender's iterator is nothing to be held from one slice to the next
-                continue
-            if number == start:
-                slices.restart()
-            if number % _AT_ONCE == 0 and number > start:
-                slices.rest()
-                self._report.progress(f"Exporting objects ({number})")
-            yield entry, entry.object, matrices[number]
-            self.done = number + 1
-        self.done = self.count
+        slices = self._report.slices
+        # Blender's iterator is nothing to be held from one slice to the next.
+        entries = enumerate(itertools.islice(depsgraph.object_instances, self.done, None), self.done)
+        slices.restart()
+        while self.done < self.count:
+            end = min(self.done + _AT_ONCE, self.count)
+            yield itertools.islice(entries, end - self.done)
+            self.done = end
+            slices.rest()
+            self._report.progress(f"Exporting objects ({end})")
 
 
 class ObjectPass:
@@ -84,6 +86,7 @@ class ObjectPass:
 
     def _begin(self, unchanged: dict[int, Instance], moved: dict[int, Instance], identify: bool) -> None:
         context, report = self._context, self._context.report
+        self._may_have_hair = context.may_have_hair
         self._sampled = self._materials.sampled
         self.walk = InstanceWalk(report)
         self._reader = InstanceReader(context, self._materials, self._meshes)
@@ -91,7 +94,10 @@ class ObjectPass:
         self._particles = ParticleTable()
         self._curves = ConvertedCurves(self._reader, self._placements)
         self._single = SingleObjects(self._reader, self._placements, self._curves, unchanged, moved)
-        self._multiplied = MultipliedObjects(self._reader, self._placements, self._curves, self._particles)
+        self._groups = InstanceGroups(self._placements)
+        self._multiplied = MultipliedObjects(
+            self._reader, self._placements, self._curves, self._particles, self._groups, self._may_have_hair
+        )
         self._hair = ObjectHair(self._reader, self._placements, report, context.is_render)
         self._awaits_hair = False
         """Whether the next entry is placed, but for its hair."""
@@ -108,31 +114,40 @@ class ObjectPass:
             self._begin({}, {}, self._placements.identify)
             self._place(depsgraph, selection)
         report = self._context.report
-        placed = self._placements.finish(report)
+        placed = self._placements.finish(report, self._groups.arrays())
         self._reader.missing.warn(report)
         self._reader.faceless.warn(report)
         return placed
 
     def _place(self, depsgraph: bpy.types.Depsgraph, selection: Selection) -> None:
         """Place all that a slice has time for. Raises Unfinished when it is over."""
-        use_surfaces, may_have_hair = self._context.use_surfaces, self._context.may_have_hair
+        use_surfaces = self._context.use_surfaces
         self._reader.instance_attributes.depsgraph = depsgraph
         self._particles.begin(depsgraph.scene_eval.frame_current_final)
         try:
-            for entry, source, matrix in self.walk.entries(depsgraph):
-                if not use_surfaces and source.type != "LIGHT":
-                    continue
-                if not self._awaits_hair:
-                    if entry.is_instance:
-                        self._multiplied.export(entry, source, matrix, selection)
-                    elif entry.show_self:
-                        self._single.export(entry, source, matrix, selection)
-                if may_have_hair and source.type == "MESH" and entry.show_particles:
-                    self._awaits_hair = True
-                    self._hair.export(entry, source, matrix, selection)
-                    self._awaits_hair = False
+            for entries in self.walk.chunks(depsgraph):
+                for number, entry in self._groups.others(entries):
+                    self.walk.done = number
+                    if use_surfaces or entry.object.type == "LIGHT":
+                        self._export(number, entry, selection)
+            self._placements.begin_entry(self.walk.count)
             self._curves.export(depsgraph, self._context.report.slices)
         finally:
+            self._groups.settle(self.walk.matrices)
             self._reader.instance_attributes.depsgraph = None  # it may hold something of Blender's
             self._particles.forget()
             self._placements.check()
+
+    def _export(self, number: int, entry: bpy.types.DepsgraphObjectInstance, selection: Selection) -> None:
+        """Place what an entry of a number shows. Raises Unfinished when the slice is over."""
+        source, matrix = entry.object, self.walk.matrices[number]
+        self._placements.begin_entry(number)
+        if not self._awaits_hair:
+            if entry.is_instance:
+                self._multiplied.export(number, entry, source, matrix, selection)
+            elif entry.show_self:
+                self._single.export(entry, source, matrix.astype(np.float64), selection)
+        if self._may_have_hair and source.type == "MESH" and entry.show_particles:
+            self._awaits_hair = True
+            self._hair.export(entry, source, matrix.astype(np.float64), selection)
+            self._awaits_hair = False

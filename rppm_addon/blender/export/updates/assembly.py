@@ -5,9 +5,9 @@ import bpy
 
 from ....scene import Light, Scene
 from ..context import ExportContext
-from ..instances.assets import export_asset_names
 from ..instances.objects import ObjectExporter
 from ..instances.placements import Placed
+from ..view_layer.assets import export_asset_names
 from ..view_layer.settings import export_cubemap_center, export_dicing_rate, export_exposure
 
 
@@ -23,6 +23,7 @@ def fill_scene(
     source = depsgraph.scene_eval
     scene.meshes = list(objects.meshes.meshes)
     scene.instances = list(placed.instances)
+    scene.instance_arrays = list(placed.arrays)
     scene.materials = list(objects.materials.materials)
     scene.lights = [*placed.lights, *suns]
     scene.images = list(context.images.images)
