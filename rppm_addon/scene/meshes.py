@@ -233,8 +233,23 @@ class InstanceArray:
     particles: ParticleArray | None = None
     """None: they stand for no particles."""
     attributes: dict[str, np.ndarray] = field(default_factory=dict, metadata=declared(finite=False))
-    """By name, (instances, channels) float64, values of the attributes that each has as a whole. An empty dictionary:
-    all have the attributes of the first."""
+    """By name, (instances, channels) float64, values of the attributes that differ; all have the other attributes of
+    the first."""
+
+    @classmethod
+    def joined(cls, arrays: Sequence["InstanceArray"]) -> "InstanceArray":
+        """The instances of arrays with the same members and attributes, whose places follow each other."""
+        if len(arrays) == 1:
+            return arrays[0]
+        particles = [array.particles for array in arrays if array.particles is not None]
+        return cls(
+            arrays[0].first,
+            np.concatenate([array.places for array in arrays]),
+            np.concatenate([array.matrices for array in arrays]),
+            np.concatenate([array.randoms for array in arrays]),
+            ParticleArray.joined(particles) if particles else None,
+            {name: np.concatenate([array.attributes[name] for array in arrays]) for name in arrays[0].attributes},
+        )
 
     def __len__(self) -> int:
         return len(self.places)
@@ -255,7 +270,8 @@ class InstanceArray:
         attributes = [shared.attributes] * count
         if self.attributes:
             columns = [list(map(tuple, column.tolist())) for column in self.attributes.values()]
-            attributes = [dict(zip(self.attributes, row, strict=True)) for row in zip(*columns, strict=True)]
+            rows = zip(*columns, strict=True)
+            attributes = [shared.attributes | dict(zip(self.attributes, row, strict=True)) for row in rows]
         return [
             Instance(
                 shared.mesh,

@@ -5,12 +5,13 @@ Blender does not say which instance of geometry nodes one of a depsgraph is; its
 for each level of what multiplies what (Blender's object_dupli.cc).
 """
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from ..geometry.meshes.attributes import attribute_values
+from ..geometry.meshes.attributes import INSTANCER_GENERATED, INSTANCER_UV, attribute_values
 
 _NO_NUMBER = 0x7FFFFFFF
 """Ends a persistent identifier that has fewer levels than the eight that it has room for."""
@@ -24,15 +25,30 @@ class _Level:
 
     has_parts: bool
     """Whether it brings anything but instances, which then have a number before their own."""
-    places: dict[int, int]
-    """By their numbers, as far as these are known."""
-    repeated: list[int]
+    numbers: np.ndarray
+    """Numbers of instances, as far as they are known, ascending."""
+    places: np.ndarray
+    """Places of the instances that have these numbers."""
+    repeated: np.ndarray
     """Places that have the number of one before, as in what is joined of the same points: Blender makes up others."""
     values: dict[str, np.ndarray]
     """By name, (instances, 4) as colors."""
     references: np.ndarray
     """Index into ``sources`` of what each instance multiplies."""
     sources: list["_Source"]
+
+    def find(self, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return whether numbers (n,) are known, (n,) bool, and the places (n,) of those that are."""
+        if len(self.numbers) == 0:
+            return np.zeros(len(numbers), bool), np.zeros(len(numbers), np.int64)
+        at = np.minimum(np.searchsorted(self.numbers, numbers), len(self.numbers) - 1)
+        return self.numbers[at] == numbers, self.places[at]
+
+    def learn(self, numbers: list[int]) -> None:
+        """Give the repeated places numbers that Blender made up."""
+        joined = np.concatenate([self.numbers, numbers])
+        self.numbers, first = np.unique(joined[::-1], return_index=True)  # the newest of a number counts
+        self.places = np.concatenate([self.places, self.repeated])[::-1][first]
 
 
 @dataclass(slots=True)
@@ -44,6 +60,10 @@ class _Members:
 
 _Source = _Level | _Members | None
 """Geometry set or collection that may multiply further objects; None where nothing is multiplied further."""
+
+
+_Column = tuple[np.ndarray, np.ndarray]
+"""An attribute of many instances: (n,) bool, whether each has it, and (n, 4) float32, as colors."""
 
 
 class InstanceAttributes:
@@ -63,9 +83,12 @@ class InstanceAttributes:
         self._completed = set()
 
     def value(self, instance: bpy.types.DepsgraphObjectInstance, name: str) -> tuple[float, ...] | None:
-        """Return the attribute of that name as a color, from the innermost level that has it; None where none has."""
-        if not name:
-            return None
+        """Return an attribute of a name that begins with INSTANCER, as a color, from the innermost level that has it;
+        None where none has."""
+        if name in COORDINATES:
+            place = COORDINATES[name](np.array([instance.orco], np.float64), np.array([instance.uv], np.float64))
+            return tuple(place[0].tolist())
+        path = name.partition(":")[2]
         owner, numbers = instance.parent, _numbers(instance)
         source, address = self._source(owner), owner.as_pointer()
         levels, unknown = _walk(source, numbers)
@@ -73,9 +96,31 @@ class InstanceAttributes:
             self._completed.add(address)
             self._complete(source, address)
             levels, _ = _walk(source, numbers)
-        found = (level.values[name][place] for level, place in reversed(levels) if name in level.values)
+        found = (level.values[path][place] for level, place in reversed(levels) if path in level.values)
         value = next(found, None)
         return None if value is None else tuple(value.tolist())
+
+    def has_any(self, owner: bpy.types.Object) -> bool:
+        """Whether what an evaluated object multiplies may have attributes of its own."""
+        return self._source(owner) is not None
+
+    def columns(self, owner: int, identifiers: np.ndarray, names: Iterable[str]) -> dict[str, _Column]:
+        """Return the attributes of many instances, by their names in geometry nodes, as value() finds them.
+
+        owner: address of the object that multiplies all of them, of which has_any() was asked. identifiers: (n, 8)
+        int32, their persistent identifiers.
+        """
+        source, count = self._sources[owner], len(identifiers)
+        levels = (identifiers != _NO_NUMBER).sum(axis=1)
+        order = levels[:, None] - 1 - np.arange(identifiers.shape[1])
+        paths = np.where(order >= 0, np.take_along_axis(identifiers, np.maximum(order, 0), axis=1), _NO_NUMBER)
+        paths = np.concatenate([paths, np.full((count, 1), _NO_NUMBER)], axis=1)
+        found = {name: (np.zeros(count, bool), np.zeros((count, 4), np.float32)) for name in names}
+        if not _fill(found, source, paths, np.arange(count), 0) and owner not in self._completed:
+            self._completed.add(owner)
+            self._complete(source, owner)
+            _fill(found, source, paths, np.arange(count), 0)
+        return found
 
     def _source(self, owner: bpy.types.Object) -> _Source:
         address = owner.as_pointer()
@@ -109,7 +154,7 @@ class InstanceAttributes:
             if not found:
                 return
             for level, numbers in found:
-                level.places.update(zip(numbers, level.repeated, strict=True))
+                level.learn(list(numbers))
 
     def _level(self, geometry: "bpy.types.GeometrySet", owner: bpy.types.Object, is_multiplied: bool) -> _Level | None:
         points = geometry.instances_pointcloud()
@@ -117,16 +162,17 @@ class InstanceAttributes:
             return None
         attributes = points.attributes
         count = len(attributes["position"].data)
-        numbers = _integers(attributes["id"]) if "id" in attributes else range(count)
-        places = {number: place for place, number in reversed(list(enumerate(numbers)))}
+        given = _integers(attributes["id"]) if "id" in attributes else np.arange(count)
+        numbers, places = np.unique(given, return_index=True)  # the first of a number
         own = {"MESH": "mesh", "CURVES": "curves", "CURVE": "curves", "FONT": "curves", "POINTCLOUD": "pointcloud"}
         parts = _PARTS if is_multiplied else [part for part in _PARTS if part != own.get(owner.type)]
         return _Level(
             any(getattr(geometry, part, None) is not None for part in parts),
+            numbers,
             places,
-            sorted(set(range(count)) - set(places.values())),
+            np.setdiff1d(np.arange(count), places),
             {attribute.name: color for attribute in attributes if (color := _colors(attribute)) is not None},
-            np.array(_integers(attributes[".reference_index"])),
+            _integers(attributes[".reference_index"]),
             [self._referenced(each, owner) for each in geometry.instance_references()],
         )
 
@@ -154,18 +200,51 @@ def _walk(source: _Source, numbers: list[int]) -> tuple[list[tuple[_Level, int]]
         numbers = numbers[source.has_parts :]
         if not numbers:
             break
-        place = source.places.get(numbers[0])
-        if place is None:
+        is_known, places = source.find(np.array(numbers[:1]))
+        if not is_known[0]:
             return levels, (source, numbers[0])
+        place = int(places[0])
         levels.append((source, place))
         source, numbers = source.sources[source.references[place]], numbers[1:]
     return levels, None
 
 
-def _integers(attribute: bpy.types.Attribute) -> list[int]:
+def _fill(found: dict[str, _Column], source: _Source, paths: np.ndarray, rows: np.ndarray, depth: int) -> bool:
+    """Fill in the attributes of instances, from the outermost level that has them to the innermost, as _walk goes.
+
+    paths: (n, 9) numbers of all instances from the outermost level on. rows: instances that lead here. depth: the
+    level. Returns whether all numbers are known.
+    """
+    if source is None:
+        return True
+    rows = rows[paths[rows, depth] != _NO_NUMBER]
+    if len(rows) == 0:
+        return True
+    if isinstance(source, _Members):
+        numbers = paths[rows, depth]
+        inside = [number for number in np.unique(numbers).tolist() if 0 <= number < len(source.sources)]
+        parts = [_fill(found, source.sources[number], paths, rows[numbers == number], depth + 1) for number in inside]
+        return all(parts)
+    depth += source.has_parts
+    rows = rows[paths[rows, depth] != _NO_NUMBER]
+    is_known, places = source.find(paths[rows, depth])
+    rows, places = rows[is_known], places[is_known]
+    for name, (is_found, values) in found.items():
+        if name in source.values:
+            is_found[rows] = True
+            values[rows] = source.values[name][places]
+    references = source.references[places]
+    parts = [
+        _fill(found, source.sources[reference], paths, rows[references == reference], depth + 1)
+        for reference in np.unique(references).tolist()
+    ]
+    return bool(is_known.all()) and all(parts)
+
+
+def _integers(attribute: bpy.types.Attribute) -> np.ndarray:
     values = np.empty(len(attribute.data), np.int32)
     attribute.data.foreach_get("value", values)
-    return values.tolist()
+    return values
 
 
 def _colors(attribute: bpy.types.Attribute) -> np.ndarray | None:
@@ -178,3 +257,76 @@ def _colors(attribute: bpy.types.Attribute) -> np.ndarray | None:
     width = values.shape[1]
     colors[:, : 3 if width == 1 else width] = values
     return colors
+
+
+@dataclass(frozen=True)
+class AttributeRows:
+    """Attributes of the instances of one object by one instancer in a slice of a pass over a depsgraph."""
+
+    shared: dict[str, tuple[float, ...]]
+    """Values by name where an instance has none of its own."""
+    own: dict[str, _Column]
+    """Values of instances by name, of which at least one has each."""
+
+    def are_whole(self, count: int) -> np.ndarray:
+        """Whether each of so many instances has all attributes that any of them has of its own, (n,) bool."""
+        return np.all([np.ones(count, bool), *(found for found, _ in self.own.values())], axis=0)
+
+    def columns(self, chosen: np.ndarray) -> dict[str, np.ndarray]:
+        """(n, channels) float64 by name, what chosen instances have of their own."""
+        return {name: values[chosen].astype(np.float64) for name, (_, values) in self.own.items()}
+
+    def __getitem__(self, place: int) -> dict[str, tuple[float, ...]]:
+        """All attributes of one instance."""
+        own = {name: tuple(values[place].tolist()) for name, (found, values) in self.own.items() if found[place]}
+        return self.shared | own
+
+
+class AttributeNotes:
+    """Notes what tells the attributes of the instances of one object by one instancer."""
+
+    def __init__(
+        self,
+        attributes: InstanceAttributes,
+        owner: bpy.types.Object,
+        names: Iterable[str],
+        shared: dict[str, tuple[float, ...]],
+    ) -> None:
+        """owner: what multiplies the object. names: attributes that each instance may have of its own. shared: values
+        of attributes by name, where instances have none of their own."""
+        self._attributes = attributes
+        self._owner = owner.as_pointer()
+        self._coordinates = [name for name in names if name in COORDINATES]
+        self._names = [name for name in names if name not in COORDINATES] if attributes.has_any(owner) else []
+        self._shared = shared
+        self._identifiers: list[tuple[int, ...]] = []
+        self._places: list[tuple[float, ...]] = []
+
+    def add(self, instance: bpy.types.DepsgraphObjectInstance) -> None:
+        """Note an instance."""
+        if self._names:
+            self._identifiers.append(instance.persistent_id[:])
+        if self._coordinates:
+            self._places.append((*instance.orco, *instance.uv))
+
+    def end(self) -> AttributeRows:
+        """Return the attributes of the instances that were noted since the last call."""
+        found: dict[str, _Column] = {}
+        if self._names:
+            paths = {name.partition(":")[2] for name in self._names} - {""}
+            identifiers, self._identifiers = np.array(self._identifiers, np.int32), []
+            columns = self._attributes.columns(self._owner, identifiers, paths)
+            found = {f"INSTANCER:{path}": column for path, column in columns.items() if column[0].any()}
+        if self._coordinates:
+            places, self._places = np.array(self._places, np.float64), []
+            there = np.ones(len(places), bool)
+            found |= {name: (there, COORDINATES[name](places[:, :3], places[:, 3:])) for name in self._coordinates}
+        return AttributeRows(self._shared, found)
+
+
+COORDINATES: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
+    INSTANCER_GENERATED: lambda generated, _: 0.5 * generated - 0.5,
+    INSTANCER_UV: lambda _, uv: np.concatenate([uv, np.zeros((len(uv), 1))], axis=1),
+}
+"""Functions that return the coordinates of instances on the object that multiplies them, (n, 3), of Blender's generated
+coordinates (n, 3) and UV (n, 2), by attribute name, as in Cycles. An object that stands for itself has zeros."""

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Instances that share a description, collected as arrays while a pass goes through the entries of a depsgraph."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 
 import bpy
 import numpy as np
 
-from ....scene import InstanceArray, Particle, ParticleArray
+from ....scene import Instance, InstanceArray
 from ..common.matrices import are_plain
+from ..shading.nodes.missing_attributes import MissingAttributes
+from .instance_attributes import AttributeNotes
 from .instance_description import InstanceDescription
 from .particles import ParticleRows, ParticleTable
 from .placements import Placements
@@ -18,13 +20,20 @@ _LARGEST_RANDOM_ID = 0xFFFFFFFF
 class InstanceGroup:
     """Instances of one description. Between two slices of a pass it holds nothing of Blender's."""
 
-    def __init__(self, description: InstanceDescription | None, particles: ParticleTable | None = None) -> None:
-        """description: None is of what is not rendered. particles: those that the instances may stand for."""
+    def __init__(
+        self,
+        description: InstanceDescription | None,
+        particles: ParticleTable | None = None,
+        attributes: AttributeNotes | None = None,
+    ) -> None:
+        """description: None is of what is not rendered. particles: those that the instances may stand for. attributes:
+        notes of the attributes that each may have of its own."""
         self.description = description
         self._numbers: list[int] = []
         self._random_ids: list[int] = []
         self._particles = None if particles is None else ParticleRows(particles)
-        self._arrays: list[InstanceArray] = []
+        self._attributes = attributes
+        self.arrays: list[InstanceArray] = []
         """Instances of the slices before, with the numbers of their entries as places."""
 
     def take(self, number: int, entry: bpy.types.DepsgraphObjectInstance) -> None:
@@ -35,65 +44,83 @@ class InstanceGroup:
         self._random_ids.append(entry.random_id)
         if self._particles is not None:
             self._particles.add(entry)
+        if self._attributes is not None:
+            self._attributes.add(entry)
 
-    def settle(self, matrices: np.ndarray, placements: Placements) -> None:
+    def settle(self, matrices: np.ndarray, placements: Placements, missing: MissingAttributes) -> None:
         """Make an array of the instances that were taken since the last call.
 
         matrices: (entries, 4, 4) float32, object to world. Instances that arrays do not describe are placed one by one.
+        missing: takes note of the attributes that instances lack.
         """
         if not self._numbers:
             return
         numbers = np.array(self._numbers, np.int32)
         randoms = (np.array(self._random_ids, np.int64) & _LARGEST_RANDOM_ID) / _LARGEST_RANDOM_ID
         self._numbers, self._random_ids = [], []
-        found, particles = (None, None) if self._particles is None else self._particles.end()
         fits = are_plain(matrices[numbers])
-        if found is not None:
-            fits &= found
+        is_particle, particles, attributes = np.zeros(len(numbers), bool), None, None
+        if self._particles is not None:
+            is_particle, particles = self._particles.end()
+            fits &= is_particle
+        if self._attributes is not None:
+            attributes = self._attributes.end()
+            fits &= attributes.are_whole(len(numbers))
+
+        def instance(place: int) -> Instance:
+            made = self.description.place(
+                matrices[numbers[place]].astype(np.float64),
+                float(randoms[place]),
+                particles[place] if is_particle[place] else None,
+                None if attributes is None else attributes[place],
+            )
+            if attributes is not None:
+                missing.note(made)
+            return made
+
         for place in np.flatnonzero(~fits).tolist():
-            is_particle = found is not None and found[place]
-            self._place(placements, numbers[place], matrices, randoms[place], particles[place] if is_particle else None)
+            placements.begin_entry(int(numbers[place]))
+            alone = instance(place)
+            placements.add(alone, alone.matrix, 0, ())
         if fits.any():
-            numbers, randoms = numbers[fits], randoms[fits]
-            particles = None if particles is None else particles.rows(fits)
-            matrix = matrices[numbers[0]].astype(np.float64)
-            first = self.description.place(matrix, float(randoms[0]), None if particles is None else particles[0])
-            self._arrays.append(InstanceArray(first, numbers, matrices[numbers, :3], randoms, particles))
+            self.arrays.append(
+                InstanceArray(
+                    instance(int(fits.argmax())),
+                    numbers[fits],
+                    matrices[numbers[fits], :3],
+                    randoms[fits],
+                    None if particles is None else particles.rows(fits),
+                    {} if attributes is None else attributes.columns(fits),
+                )
+            )
 
-    def _place(
-        self, placements: Placements, number: int, matrices: np.ndarray, random: float, particle: Particle | None
-    ) -> None:
-        """Place the instance of the entry of a number by itself."""
-        matrix = matrices[number].astype(np.float64)
-        placements.begin_entry(int(number))
-        placements.add(self.description.place(matrix, float(random), particle), matrix, 0, ())
-
-    def array(self) -> InstanceArray | None:
-        """All instances of the group, with the numbers of their entries as places; None without any."""
-        arrays = self._arrays
-        if len(arrays) < 2:
-            return arrays[0] if arrays else None
-        return InstanceArray(
-            arrays[0].first,
-            np.concatenate([array.places for array in arrays]),
-            np.concatenate([array.matrices for array in arrays]),
-            np.concatenate([array.randoms for array in arrays]),
-            None if self._particles is None else ParticleArray.joined([array.particles for array in arrays]),
-        )
+    def joined_arrays(self) -> list[InstanceArray]:
+        """All instances of the group in as few arrays as may be."""
+        alike: dict[Hashable, list[InstanceArray]] = {}
+        for array in self.arrays:
+            channels = sorted((name, values.shape[1]) for name, values in array.attributes.items())
+            alike.setdefault((*channels, *sorted(array.first.attributes)), []).append(array)
+        return [InstanceArray.joined(arrays) for arrays in alike.values()]
 
 
 class InstanceGroups:
     """Groups of instances, by what Blender's entries show."""
 
-    def __init__(self, placements: Placements) -> None:
+    def __init__(self, placements: Placements, missing: MissingAttributes) -> None:
         self._placements = placements
+        self._missing = missing
         self._groups: list[InstanceGroup] = []
         self._known: dict[tuple[int, int, int], InstanceGroup] = {}
         """Groups by the addresses of an object, of its data and of what multiplies it."""
 
-    def open(self, description: InstanceDescription | None, particles: ParticleTable | None = None) -> InstanceGroup:
+    def open(
+        self,
+        description: InstanceDescription | None,
+        particles: ParticleTable | None = None,
+        attributes: AttributeNotes | None = None,
+    ) -> InstanceGroup:
         """Begin a group. The arguments are those of InstanceGroup."""
-        group = InstanceGroup(description, particles)
+        group = InstanceGroup(description, particles, attributes)
         self._groups.append(group)
         return group
 
@@ -131,8 +158,8 @@ class InstanceGroups:
     def settle(self, matrices: np.ndarray) -> None:
         """End a slice: make arrays of all that was taken. matrices: (entries, 4, 4) float32, object to world."""
         for group in self._groups:
-            group.settle(matrices, self._placements)
+            group.settle(matrices, self._placements, self._missing)
 
     def arrays(self) -> list[InstanceArray]:
         """The instances of all groups, with the numbers of their entries as places."""
-        return [array for group in self._groups if (array := group.array()) is not None]
+        return [array for group in self._groups for array in group.joined_arrays()]

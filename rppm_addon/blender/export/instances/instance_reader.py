@@ -2,7 +2,6 @@
 """Reads of Blender's objects what a pass over a depsgraph places: descriptions of instances, and lights."""
 
 import functools
-from collections.abc import Callable
 
 import bpy
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from ....scene import Instance, Light, RayVisibility
 from ..common.hashing import hashed
 from ..context import ExportContext
-from ..geometry.meshes.attributes import INSTANCER_GENERATED, INSTANCER_UV, attribute_of
+from ..geometry.meshes.attributes import attribute_of
 from ..geometry.meshes.rendered_meshes import has_no_faces
 from ..geometry.strands.particle_hair import HairSystem
 from ..geometry.strands.round_meshes import ROUND_TYPES, Hair, RoundSource
@@ -22,7 +21,7 @@ from ..shading.nodes.missing_attributes import MissingAttributes
 from ..view_layer.layers import light_group_of
 from ..view_layer.visibility import is_seen, visibility_of
 from .faceless import FacelessObjects
-from .instance_attributes import InstanceAttributes
+from .instance_attributes import COORDINATES, AttributeNotes, InstanceAttributes
 from .instance_description import InstanceDescription, Instancer
 from .mesh_table import MeshTable
 
@@ -32,12 +31,6 @@ SURFACE_TYPES = {"MESH", "VOLUME", *CONVERTED_TYPES, *ROUND_TYPES}
 """Object types that are rendered as surfaces; that of a volume is the box around it."""
 
 _USE_UV = {"tex_coord", "attribute", "normal_map", "tangent", "uvmap", "tex_image", "tex_image_tiles"}
-_COORDINATES: dict[str, Callable[[bpy.types.DepsgraphObjectInstance], tuple[float, ...]]] = {
-    INSTANCER_GENERATED: lambda multiplied: tuple(0.5 * value - 0.5 for value in multiplied.orco),
-    INSTANCER_UV: lambda multiplied: (*multiplied.uv, 0.0),
-}
-"""Functions that return the coordinates of an instance on the object that multiplies it, by attribute name, as in
-Cycles. An object that stands for itself has zeros."""
 _WHOLE = {"OBJECT", "INSTANCER"}
 """Domains of attributes that objects have as a whole."""
 
@@ -166,27 +159,48 @@ class InstanceReader:
 
     def reads_instancer(self, materials: list[int]) -> bool:
         """Whether materials or rays read attributes that each instance may have of its own."""
-        return any(name.startswith("INSTANCER:") for name in self._wanted_attributes(materials)[0])
+        return len(self._instancer_names(materials)) > 0
 
     def attribute_values(
         self, source: bpy.types.Object, materials: list[int], multiplied: bpy.types.DepsgraphObjectInstance | None
     ) -> dict[str, tuple[float, ...]]:
         """Values of attributes that the object, what multiplies it or its instance there has as a whole."""
+        values = self._shared_values(source, materials, multiplied)
+        for name in self._instancer_names(materials) if multiplied is not None else ():
+            value = self.instance_attributes.value(multiplied, name)
+            if value is not None:
+                values[name] = value
+        return values
+
+    def attribute_notes(
+        self, source: bpy.types.Object, materials: list[int], multiplied: bpy.types.DepsgraphObjectInstance
+    ) -> AttributeNotes:
+        """Begin to note the attributes of the instances that an entry's instancer has of an object."""
+        shared = self._shared_values(source, materials, multiplied)
+        return AttributeNotes(self.instance_attributes, multiplied.parent, self._instancer_names(materials), shared)
+
+    def _instancer_names(self, materials: list[int]) -> list[str]:
+        """Attributes that materials or rays read and each instance may have of its own."""
+        names, of_objects = self._wanted_attributes(materials)
+        return [name for name in names if name.startswith("INSTANCER:")] if of_objects else []
+
+    def _shared_values(
+        self, source: bpy.types.Object, materials: list[int], multiplied: bpy.types.DepsgraphObjectInstance | None
+    ) -> dict[str, tuple[float, ...]]:
+        """Values of attributes that the object, or what multiplies it, has for all instances."""
         names, of_objects = self._wanted_attributes(materials)
         values: dict[str, tuple[float, ...]] = {}
         for name in names if of_objects else ():
             domain, _, path = name.partition(":")
             if domain not in _WHOLE:
                 continue
-            if name in _COORDINATES:
-                values[name] = _COORDINATES[name](multiplied) if multiplied is not None else (0.0, 0.0, 0.0)
+            if name in COORDINATES:
+                values[name] = (0.0, 0.0, 0.0)
                 continue
-            of_instance = domain == "INSTANCER" and multiplied is not None
-            value = self.instance_attributes.value(multiplied, path) if of_instance else None
-            if value is None:
-                owners = (multiplied.parent, source) if of_instance else (source,)
-                found = (attribute_of(owner, path) or attribute_of(owner.data, path) for owner in owners)
-                value = next((value for value in found if value is not None), None)
+            of_instancer = domain == "INSTANCER" and multiplied is not None
+            owners = (multiplied.parent, source) if of_instancer else (source,)
+            found = (attribute_of(owner, path) or attribute_of(owner.data, path) for owner in owners)
+            value = next((value for value in found if value is not None), None)
             if value is not None:
                 values[name] = value
         return values

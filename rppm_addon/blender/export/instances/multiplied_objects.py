@@ -86,7 +86,7 @@ class MultipliedObjects:
         is_shown = instancer is not None and (is_seen(instancer.visibility) or kind == "LIGHT")
         if kind == "MESH" and self._may_group(source, selection) and (entry.show_self or not is_shown):
             group = self._group_of(prototype, entry, source, instancer) if is_shown else self._nothing
-            if group is self._nothing or not (prototype.curve or prototype.reads_instancer):
+            if group is self._nothing or not prototype.curve:
                 self._groups.assign((*key, address), number, entry, group)
                 return
         matrix = matrix.astype(np.float64)
@@ -154,13 +154,16 @@ class MultipliedObjects:
         if instancer.uid not in prototype.owners:
             reader.add_owner(prototype.description, instancer)
             prototype.owners.add(instancer.uid)
-        passed_on = instancer.passed_on
-        if passed_on not in prototype.multiplied:
+        # Instances that may have attributes of their own are found by what multiplies them.
+        key = instancer if prototype.reads_instancer else instancer.passed_on
+        if key not in prototype.multiplied:
             description = prototype.description.multiplied_by(instancer)
-            prototype.multiplied[passed_on] = self._groups.open(
-                description, self._particles if instancer.has_particles else None
+            prototype.multiplied[key] = self._groups.open(
+                description,
+                self._particles if instancer.has_particles else None,
+                reader.attribute_notes(source, description.materials, entry) if prototype.reads_instancer else None,
             )
-        return prototype.multiplied[passed_on]
+        return prototype.multiplied[key]
 
     def _place_mesh(
         self,

@@ -94,7 +94,7 @@ class ObjectPass:
         self._particles = ParticleTable()
         self._curves = ConvertedCurves(self._reader, self._placements)
         self._single = SingleObjects(self._reader, self._placements, self._curves, unchanged, moved)
-        self._groups = InstanceGroups(self._placements)
+        self._groups = InstanceGroups(self._placements, self._reader.missing)
         self._multiplied = MultipliedObjects(
             self._reader, self._placements, self._curves, self._particles, self._groups, self._may_have_hair
         )

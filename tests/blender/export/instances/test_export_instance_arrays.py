@@ -48,13 +48,24 @@ def piece(scene):
     return add_mesh(scene, "Piece", material=material, location=(0.5, 0.0, 0.0))
 
 
-def scatter(scene, *kinds, count=MANY, name="Host", **values):
-    """A host whose nodes of geometry put each kind of mesh in turn on the points of a line."""
+def asking(name, domain="INSTANCER"):
+    """A material that reads an attribute of instancers."""
+    material = new_material("Asking")
+    asked = add_node(material.node_tree, "ShaderNodeAttribute", attribute_type=domain, attribute_name=name)
+    surface("ShaderNodeEmission", material=material, Color=asked.outputs["Color"])
+    return material
+
+
+def scatter(scene, *kinds, count=MANY, name="Host", material=None, copies=1, **values):
+    """A host whose nodes of geometry put each kind of mesh in turn on the points of a line, and all of these on those
+    of another where copies are wanted. The attribute "place" of an instance is where it is."""
     tree, _, last = node_group(outputs=[("Geometry", "Geometry")], tree_type="GeometryNodeTree")
     choice = tree.nodes.new("GeometryNodeGeometryToInstance")
     for kind in kinds:
         shape = add_node(tree, kind)
-        painted = add_node(tree, "GeometryNodeSetMaterial", Material=new_material(kind), Geometry=shape.outputs["Mesh"])
+        painted = add_node(
+            tree, "GeometryNodeSetMaterial", Material=material or new_material(kind), Geometry=shape.outputs["Mesh"]
+        )
         link(tree, painted.outputs[0], choice.inputs[0])
     line = add_node(tree, "GeometryNodeMeshLine", Count=count, Offset=(0.1, 0.2, 0.3))
     placed = add_node(
@@ -65,7 +76,21 @@ def scatter(scene, *kinds, count=MANY, name="Host", **values):
         Pick_Instance=True,
         Rotation=(0.1, 0.2, 0.3),
     )
-    link(tree, placed.outputs["Instances"], last.inputs[0])
+    stored = add_node(
+        tree,
+        "GeometryNodeStoreNamedAttribute",
+        data_type="FLOAT_VECTOR",
+        domain="INSTANCE",
+        Name="place",
+        Geometry=placed.outputs["Instances"],
+    )
+    value = next(socket for socket in stored.inputs if socket.name == "Value" and socket.enabled)
+    link(tree, add_node(tree, "GeometryNodeInputPosition").outputs[0], value)
+    made = stored.outputs["Geometry"]
+    if copies > 1:
+        row = add_node(tree, "GeometryNodeMeshLine", Count=copies, Offset=(3.0, 0.0, 0.0))
+        made = add_node(tree, "GeometryNodeInstanceOnPoints", Points=row.outputs["Mesh"], Instance=made).outputs[0]
+    link(tree, made, last.inputs[0])
     host = add_mesh(scene, name, **values)
     host.modifiers.new("Scatter", "NODES").node_group = tree
     return host
@@ -111,14 +136,65 @@ def test_what_instancers_pass_on_separates_arrays(scene, piece):
     assert alone.visibility == RayVisibility.ALL ^ RayVisibility.GLOSSY
 
 
-@pytest.mark.parametrize("kind", ["FACES", "VERTS"])
-def test_faces_and_vertices(scene, piece, kind):
+def grid_that_shows(scene, piece, kind):
+    """A grid of 49 faces with a UV map that multiplies a piece."""
     places = [(0.3 * (number % 8), 0.3 * (number // 8), 0.0) for number in range(64)]
     faces = [(8 * y + x, 8 * y + x + 1, 8 * y + x + 9, 8 * y + x + 8) for x in range(7) for y in range(7)]
     host = add_mesh(scene, "Host", places, faces)
+    uv = host.data.uv_layers.new(name="UVMap")
+    uv.data.foreach_set("uv", np.linspace(0.0, 1.0, 2 * len(host.data.loops)))
     piece.parent, host.instance_type = host, kind
+
+
+@pytest.mark.parametrize("kind", ["FACES", "VERTS"])
+def test_faces_and_vertices(scene, piece, kind):
+    grid_that_shows(scene, piece, kind)
     (array,) = assert_same_instances(scene, most_alone=2).instance_arrays
     assert len(array) == {"FACES": 49, "VERTS": 64}[kind]
+
+
+@pytest.mark.parametrize("output", ["Generated", "UV"])
+def test_coordinates_on_the_instancer(scene, piece, output):
+    tree = piece.data.materials[0].node_tree
+    asked = add_node(tree, "ShaderNodeTexCoord", from_instancer=True)
+    emission = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeEmission")
+    link(tree, asked.outputs[output], emission.inputs["Color"])
+    grid_that_shows(scene, piece, "FACES")
+    (array,) = assert_same_instances(scene, most_alone=2).instance_arrays
+    (values,) = array.attributes.values()
+    assert values.shape == (49, 3) and (output == "Generated" or len(np.unique(values[:, 0])) == 49)
+
+
+@pytest.mark.skipif(not hasattr(bpy.types.Object, "evaluated_geometry"), reason="Blender tells since 4.5")
+@pytest.mark.parametrize("copies", [1, 4])
+def test_attributes_of_geometry_nodes(scene, copies):
+    """Two hosts, whose instances Blender numbers from 0 on, share a material; one has a property of its own instead."""
+    material = asking("place")
+    hosts = [
+        scatter(
+            scene, "GeometryNodeMeshCube", "GeometryNodeMeshCone", count=80, copies=copies, material=material, name=name
+        )
+        for name in ("A", "B", "C")
+    ]
+    hosts[2].modifiers[0].node_group.nodes["Store Named Attribute"].inputs["Name"].default_value = "other"
+    hosts[2]["place"] = 7.0
+    exported = assert_same_instances(scene, most_alone=3)
+    arrays = exported.instance_arrays
+    assert [len(array) for array in arrays] == [40 * copies] * 6
+    assert all(len(np.unique(array.attributes["INSTANCER:place"], axis=0)) == 40 for array in arrays[:4])
+    assert all(array.attributes == {} for array in arrays[4:])
+    assert {array.first.attributes["INSTANCER:place"] for array in arrays[4:]} == {(7.0,)}
+
+
+@pytest.mark.skipif(not hasattr(bpy.types.Object, "evaluated_geometry"), reason="Blender tells since 4.5")
+def test_attributes_in_slices(scene):
+    scatter(scene, "GeometryNodeMeshCube", count=1000, material=asking("place"))
+    sync = SceneSync()
+    while sync.advance(depsgraph(), CAMERA, None, 0.0) is not None:
+        pass
+    (array,) = sync.scene.instance_arrays
+    np.testing.assert_allclose(array.attributes["INSTANCER:place"][:, :3], array.matrices[:, :, 3], atol=1e-6)
+    assert list(map(members, sync.scene.expanded().instances)) == list(map(members, one_by_one(depsgraph())))
 
 
 def emit(scene, piece, count=MANY, **values):
