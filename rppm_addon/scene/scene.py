@@ -9,6 +9,7 @@ import numpy as np
 
 from .camera import Camera
 from .common.declared import declared
+from .common.garbage import collector_paused
 from .errors import SceneError
 from .images import Image
 from .lights import Light, World
@@ -81,6 +82,7 @@ class Scene:
         """Instances, those of arrays included."""
         return len(self.instances) + sum(map(len, self.instance_arrays))
 
+    @collector_paused()
     def expanded(self) -> "Scene":
         """The scene with the instances of arrays among the others, each in its place, and without arrays; the scene
         itself where it has none.

@@ -68,7 +68,7 @@ class MultipliedObjects:
         matrix: np.ndarray,
         selection: Selection,
     ) -> None:
-        """Place the object of an entry of a depsgraph, of a number, at a matrix (4, 4), float32.
+        """Place the object of an entry of a depsgraph, of a number, at a matrix (4, 4).
 
         Where arrays describe the instances that the entry's instancer has of the object, the groups take them. Raises
         Unfinished when the slice is over.
@@ -89,7 +89,6 @@ class MultipliedObjects:
             if group is self._nothing or not prototype.curve:
                 self._groups.assign((*key, address), number, entry, group)
                 return
-        matrix = matrix.astype(np.float64)
         if is_shown and entry.show_self and not selection.culling.leaves_out(source, matrix):
             self._place(prototype, entry, source, matrix, instancer)
 

@@ -35,6 +35,8 @@ class InstanceWalk:
         self.matrices = np.zeros((0, 4, 4), np.float32)
         """(entries, 4, 4) float32, object to world."""
         self._is_begun = False
+        self._exact, self._exact_start = self.matrices, 0
+        """Some matrices that follow each other, float64, and the number of the first."""
         self.done = 0
         """Number of entries that have been dealt with."""
         self.count = 0
@@ -54,15 +56,26 @@ class InstanceWalk:
         if self.done == self.count:
             return
         slices = self._report.slices
-        # Blender's iterator is nothing to be held from one slice to the next.
+        # Blender's iterator is nothing to be held from one slice to the next: it goes to the place again.
         entries = enumerate(itertools.islice(depsgraph.object_instances, self.done, None), self.done)
+        first = next(entries)
         slices.restart()
+        chunk = itertools.chain((first,), itertools.islice(entries, _AT_ONCE - 1))
         while self.done < self.count:
             end = min(self.done + _AT_ONCE, self.count)
-            yield itertools.islice(entries, end - self.done)
+            yield chunk
             self.done = end
             slices.rest()
             self._report.progress(f"Exporting objects ({end})")
+            chunk = itertools.islice(entries, _AT_ONCE)
+
+    def matrix(self, number: int) -> np.ndarray:
+        """The matrix (4, 4) float64 of the entry of a number, object to world."""
+        place = number - self._exact_start
+        if not 0 <= place < len(self._exact):
+            self._exact, self._exact_start = self.matrices[number : number + _AT_ONCE].astype(np.float64), number
+            place = 0
+        return self._exact[place]
 
 
 class ObjectPass:
@@ -140,14 +153,14 @@ class ObjectPass:
 
     def _export(self, number: int, entry: bpy.types.DepsgraphObjectInstance, selection: Selection) -> None:
         """Place what an entry of a number shows. Raises Unfinished when the slice is over."""
-        source, matrix = entry.object, self.walk.matrices[number]
+        source, matrix = entry.object, self.walk.matrix(number)
         self._placements.begin_entry(number)
         if not self._awaits_hair:
             if entry.is_instance:
                 self._multiplied.export(number, entry, source, matrix, selection)
             elif entry.show_self:
-                self._single.export(entry, source, matrix.astype(np.float64), selection)
+                self._single.export(entry, source, matrix, selection)
         if self._may_have_hair and source.type == "MESH" and entry.show_particles:
             self._awaits_hair = True
-            self._hair.export(entry, source, matrix.astype(np.float64), selection)
+            self._hair.export(entry, source, matrix, selection)
             self._awaits_hair = False
