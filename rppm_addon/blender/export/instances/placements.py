@@ -18,7 +18,7 @@ _PARTS = {"CURVES": -2, "POINTCLOUD": -3}
 _HAIR = -1
 """Last number in the identity of the hair that an object's particle systems bring."""
 _FEWEST = 32
-"""Instances that an array has at least: fewer cost less one by one."""
+"""Instances that an array has at least; arrays pay from about a dozen on."""
 
 Identity = tuple[int, ...]
 """Key by which an instance or a light is found again at other times: the session_uid of its object, or those of what
