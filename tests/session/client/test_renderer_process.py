@@ -24,7 +24,7 @@ from session.conftest import (
     with_settings,
 )
 
-from rppm_addon.scene import Movement, Shutter
+from rppm_addon.scene import InstanceArray, Movement, Shutter
 from rppm_addon.scene.errors import RendererError, SettingsError
 from rppm_addon.session.client.client import ProcessState
 from rppm_addon.session.client.remote_rendering import RemoteRenderer, render
@@ -247,6 +247,22 @@ def test_a_render_in_the_process_is_the_same_picture(process, passes):
     assert result.statistics.flux_watts["emitted"] > 0.0
     assert job.events[0] == "start" and [event[1] for event in job.events if event[0] == "progress"] == [0, 1, 2, 3, 4]
     assert [event for event in job.events if event[0] == "snapshot"] == [("snapshot", 0.0), ("snapshot", 0.001)]
+
+
+@pytest.mark.long
+def test_instances_in_arrays_are_the_same_picture_as_one_by_one(process):
+    """The renderer's process and a renderer in this one."""
+    scene = scene_of(2, size=48)
+    count, (floor,) = 40, scene.instances
+    matrices = np.tile(np.float32(0.1 * floor.matrix[:3]), (count, 1, 1))
+    matrices[:, :, 3] = np.random.default_rng(1).uniform(-1.0, 1.0, (count, 3))
+    many = InstanceArray(floor, np.arange(1, count + 1, dtype=np.int32), matrices, np.linspace(0.0, 1.0, count))
+    scene.instance_arrays = [many]
+    expected = rendered(scene.expanded()).combined
+    assert not np.array_equal(expected, rendered(dataclasses.replace(scene, instance_arrays=[])).combined)
+    np.testing.assert_array_equal(rendered(scene).combined, expected)
+    result = render(process, scene, Job(), SessionKind.FINAL)
+    np.testing.assert_array_equal(result.frame.combined, expected)
 
 
 def test_pictures_that_are_asked_for_come_meanwhile(process):
