@@ -17,6 +17,7 @@ from .settings import (
     DirectLight,
     FirstCameraHits,
     FirstPhotonHits,
+    Instancing,
     PixelFilter,
     RenderSettings,
 )
@@ -38,6 +39,7 @@ __all__ = [
     "DirectLight",
     "FirstCameraHits",
     "FirstPhotonHits",
+    "Instancing",
     "Image",
     "Instance",
     "Light",

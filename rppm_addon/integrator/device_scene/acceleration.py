@@ -86,6 +86,7 @@ class Acceleration:
                 radius_about(self.center, geometry),
                 scene.settings.cubemap_resolution,
                 geometry.has_round_shapes,
+                geometry.instanced,
             )
             # Where few triangles touch the center: those are tested by every ray that passes it.
             if not isinstance(structure, DeepCubemap) or structure.counts["core"] <= _MAX_CORE_TRIANGLES:

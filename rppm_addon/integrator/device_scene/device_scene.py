@@ -26,6 +26,7 @@ from ..surfaces.resolve import Resolve
 from .acceleration import Acceleration
 from .centering import Centering
 from .changes import Changes, changes_between, snapshot
+from .instancing import instanced_members
 from .iteration_parameters import IterationBlock
 from .shutter import SceneMotion
 from .stage_context import StageContext
@@ -36,6 +37,7 @@ class DeviceScene:
 
     def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
         self._timers = timers
+        self._context = context
         self._pacing = library.pacing
         self.geometry = Geometry(context, library)
         self.materials = MaterialTables(context, library)
@@ -166,7 +168,11 @@ class DeviceScene:
             changes.geometry |= self.materials.place_media(scene)
         if changes.geometry:
             self.geometry.build(
-                scene, self.materials.default_material, self._motion.swept, self.materials.media.places.slots
+                scene,
+                self.materials.default_material,
+                self._motion.swept,
+                self.materials.media.places.slots,
+                instanced_members(scene, self._context.is_software),
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
