@@ -60,7 +60,10 @@ def top_level_nodes(world: np.ndarray, first_world: int, margin: float, instance
     low, high, numbers = low[exists], high[exists], np.flatnonzero(exists).astype(np.uint32)
     leaves = np.uint32(LEAF) | numbers << np.uint32(2) | np.uint32(INSTANCE_LEAF)
     if world["child0"][0] != EMPTY_LEAF:
-        low, high = np.vstack([low, _root_box(world, np.minimum, "low")]), np.vstack([high, _root_box(world, np.maximum, "high")])
+        low, high = (
+            np.vstack([low, _root_box(world, np.minimum, "low")]),
+            np.vstack([high, _root_box(world, np.maximum, "high")]),
+        )
         leaves = np.append(leaves, _WORLD)
     nodes = moved_nodes(box_nodes((low.T, high.T, leaves), margin), first_world + len(world))
     for child in ("child0", "child1"):
