@@ -27,6 +27,7 @@ from .settings import (
     DirectLight,
     FirstCameraHits,
     FirstPhotonHits,
+    Instancing,
     PixelFilter,
     RenderSettings,
 )
@@ -51,6 +52,7 @@ __all__ = [
     "Image",
     "Instance",
     "InstanceArray",
+    "Instancing",
     "Light",
     "LightKind",
     "LightLinking",

@@ -47,7 +47,7 @@ void test_triangle(RayTest test, uint triangle, inout Hit best) {
 #ifdef SHADOW_RAYS
     if (triangle == target_triangle) return;
 #endif
-    vec4 vertex0 = triangle_vertex(3u * triangle);
+    vec4 vertex0 = world_vertex(3u * triangle);
 #ifdef TRACES_INSTANCES
     bool of_all = traced_instance == ALL_INSTANCES;
 #else
@@ -55,7 +55,7 @@ void test_triangle(RayTest test, uint triangle, inout Hit best) {
 #endif
     if (of_all && is_shadow_ray(test) && vertex0.w > 0.0) return;  // casts no shadow
 #ifdef ONE_SIDED_TRIANGLES
-    vec3 vertex1 = triangle_vertex(3u * triangle + 1u).xyz, vertex2 = triangle_vertex(3u * triangle + 2u).xyz;
+    vec3 vertex1 = world_vertex(3u * triangle + 1u).xyz, vertex2 = world_vertex(3u * triangle + 2u).xyz;
     bool from_within = dot(cross(vertex1 - vertex0.xyz, vertex2 - vertex0.xyz), test.direction) > 0.0;
     if (from_within && is_one_sided(vertex0.w)) return;
 #endif
@@ -68,8 +68,8 @@ void test_triangle(RayTest test, uint triangle, inout Hit best) {
 #ifdef TRACES_INSTANCES
     Hit before = best;
 #endif
-    intersect_triangle(test.ray, triangle, vertex0.xyz, triangle_vertex(3u * triangle + 1u).xyz,
-                       triangle_vertex(3u * triangle + 2u).xyz, best);
+    intersect_triangle(test.ray, triangle, vertex0.xyz, world_vertex(3u * triangle + 1u).xyz,
+                       world_vertex(3u * triangle + 2u).xyz, best);
 #ifdef TRACES_INSTANCES
     // Asked last, as few triangles are hit.
     if (!of_all && best.triangle == triangle && attributes[triangle].instance != traced_instance) best = before;

@@ -3,11 +3,14 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl
 // The nearest hit of each shadow ray on what casts shadows.
 layout(local_size_x = 64) in;
 #include "common/active_paths.glsl"
 #define SHADOW_RAYS
 #define NEAREST_SHADOW
+#include <TraceParameters>
+uniform Parameters { TraceParameters parameters; };
 #include TRAVERSAL
 
 restrict readonly buffer Rays;
@@ -19,5 +22,6 @@ void main() {
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
+    begin_path(parameters.first_hit + 2u * index);
     hits[index] = nearest_hit(ray);
 }

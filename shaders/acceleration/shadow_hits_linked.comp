@@ -3,6 +3,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl
 // The nearest hit of each shadow ray on what may be in the way of the light that it goes to.
 layout(local_size_x = 64) in;
 #include "common/active_paths.glsl"
@@ -12,6 +13,8 @@ uvec2 shadow_sets;  // bits of those that are in the ray's way
 #define SHADOW_LINKING
 #define SHADOW_RAYS
 #define NEAREST_SHADOW
+#include <TraceParameters>
+uniform Parameters { TraceParameters parameters; };
 #include TRAVERSAL
 
 restrict readonly buffer Rays;
@@ -26,5 +29,6 @@ void main() {
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
     target_triangle = light_triangles[index];
     shadow_sets = light_links[code_number(contributions[index].w)].shadow_sets;
+    begin_path(parameters.first_hit + 2u * index);
     hits[index] = nearest_hit(ray);
 }

@@ -4,9 +4,12 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 TRIANGLE_CLUSTERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl
 // The nearest hit of each ray.
 layout(local_size_x = 64) in;
 #include "common/active_paths.glsl"
+#include <TraceParameters>
+uniform Parameters { TraceParameters parameters; };
 #include TRAVERSAL
 
 restrict readonly buffer Rays;
@@ -16,5 +19,6 @@ void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
     Ray ray = rays[index];  // a copy: NVIDIA's compiler hands no member of a restricted block to a function
+    begin_path(parameters.first_hit + 2u * index);
     hits[index] = nearest_hit(ray);
 }

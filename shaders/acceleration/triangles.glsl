@@ -2,4 +2,4 @@
 // The world-space triangles, three vertices each (w unused).
 
 restrict readonly buffer Triangles;
-vec4 triangle_vertex(uint number) { return triangle_vertices[number]; }
+vec4 world_vertex(uint number) { return triangle_vertices[number]; }

@@ -3,27 +3,13 @@
 //
 // A node holds the boxes of both of its children. A ray goes on with the nearer of those that it meets and puts the
 // other one on a stack. Which one comes first changes no hit, only how soon a hit is found.
+#include "acceleration/one_level.glsl"
 #include "acceleration/ray_test.glsl"
+#include "bvh/boxes.glsl"
 #include "common/finite.glsl"
 #include <BvhNodes>
 
 restrict readonly buffer BvhNodes;
-
-// What a ray needs for tests with boxes.
-struct SlabTest {
-    vec3 origin;
-    vec3 inverse_direction;  // finite
-};
-
-// Where a ray enters a box, and whether it meets the box before a distance. Both ends give way by more than the
-// rounding errors of the quotients, so that no box is missed whose triangle is hit.
-bool meets_box(SlabTest slabs, vec3 low, vec3 high, float distance, out float enter) {
-    vec3 a = (low - slabs.origin) * slabs.inverse_direction, b = (high - slabs.origin) * slabs.inverse_direction;
-    vec3 near = min(a, b), far = max(a, b);
-    enter = max(max(near.x, near.y), max(near.z, 0.0));
-    float leave = min(min(far.x, far.y), min(far.z, distance));
-    return enter * 0.999999 <= leave * 1.000001;
-}
 
 Hit trace_ray(Ray ray, bool any_hit) {
     Hit best = Hit(NO_TRIANGLE, 0.0, 0.0, min(ray.maximum_distance, INFINITY_DISTANCE));
@@ -32,8 +18,7 @@ Hit trace_ray(Ray ray, bool any_hit) {
         return best;
     }
     RayTest test = make_ray_test(ray, any_hit);
-    bvec3 moves = greaterThan(abs(ray.direction), vec3(1e-30));
-    SlabTest slabs = SlabTest(ray.origin, 1.0 / mix(vec3(1e-30), ray.direction, moves));
+    SlabTest slabs = make_slab_test(ray.origin, ray.direction, 0.0);
     uint stack[MAX_DEPTH];
     int top = 0;
     uint child = 0u;

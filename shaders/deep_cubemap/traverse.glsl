@@ -8,6 +8,7 @@
 //
 // Mesa's llvmpipe ends all loops of a thread after 65535 rounds in all. Steps and tests of a ray stay
 // far below that, unless tens of thousands of triangles crowd into a few cells or around the center.
+#include "acceleration/one_level.glsl"
 #include "acceleration/ray_test.glsl"
 #include "common/finite.glsl"
 #include "common/whole_numbers.glsl"

@@ -52,7 +52,7 @@ Strand strand_at(Surface surface) {
     vec3 chord = size > 0.0 ? along / size : start;
     vec3 tangent = normalize(mix(start, 2.0 * dot(chord, start) * chord - start, lone_part));
     // Triangles of even number have their lone corner toward the tip.
-    uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
+    uint local = attributes[surface.triangle].mesh_triangle;
 
     Strand strand;
     strand.tangent = (local & 1u) == 0u ? tangent : -tangent;

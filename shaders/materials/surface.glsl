@@ -99,7 +99,7 @@ vec4 attribute_corner(uvec2 place, uint local_triangle, uint corner) {
 vec4 attribute_value(Surface surface, uint layer) {
     uvec2 place = attribute_place(surface, layer);
     if (place.y == 0u) return vec4(0.0);
-    uint local = surface.triangle - shading_instances[surface.instance].first_triangle;
+    uint local = attributes[surface.triangle].mesh_triangle;
     return surface.barycentrics.x * attribute_corner(place, local, 0u)
            + surface.barycentrics.y * attribute_corner(place, local, 1u)
            + surface.barycentrics.z * attribute_corner(place, local, 2u);

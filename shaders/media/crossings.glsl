@@ -16,6 +16,11 @@ struct Crossing {
     bool leaves;
 };
 
+uint medium_of(uint triangle) {
+    if (is_hit_triangle(triangle)) return 0u;  // instances with a medium are expanded
+    return media[attributes[triangle].material].material_medium;
+}
+
 Crossing next_crossing(inout Ray ray) {
     for (int count = 0; count < MOST_CROSSINGS; ++count) {
         Hit hit = nearest_hit(ray);
@@ -28,7 +33,7 @@ Crossing next_crossing(inout Ray ray) {
         float offset = ray_offset(normal, v0, v1, v2);
         vec3 origin = position + (leaves ? offset : -offset) * normal;
         ray = Ray(origin, hit.triangle, ray.direction, ray.maximum_distance - hit.distance);
-        uint medium = media[attributes[hit.triangle].material].material_medium;
+        uint medium = medium_of(hit.triangle);
         if (medium > 0u) return Crossing(medium, leaves);
         if (!(ray.maximum_distance > 0.0)) break;
     }

@@ -11,7 +11,7 @@ from ...scene.errors import DeviceError
 from ..context.context import TEXEL_SIZE, Context
 from .texel_buffers import allocated_size, release_textures
 
-_RANGE_ITEMS = 256
+RANGE_ITEMS = 256
 """Alignment of a range in items: items of any size then begin where every device lets a block begin."""
 SMALLEST = 64
 """Bytes that every buffer has at least."""
@@ -90,12 +90,13 @@ class GrowingBuffer:
         """Bytes; 0 while nothing was required."""
         return self._size
 
-    def ranges(self, count: int) -> list["BufferRange"]:
-        """Split the first ``count`` items into parts that a storage block holds and that begin where one may."""
+    def ranges(self, count: int, first: int = 0) -> list["BufferRange"]:
+        """Split ``count`` items, from a multiple of RANGE_ITEMS on, into parts that a storage block holds and that
+        begin where one may."""
         most = self._context.storage_block_limit // self.item_size
         if count > most:
-            most -= most % _RANGE_ITEMS
-        return [BufferRange(self, first, min(most, count - first)) for first in range(0, count, most)]
+            most -= most % RANGE_ITEMS
+        return [BufferRange(self, first + part, min(most, count - part)) for part in range(0, count, most)]
 
     @property
     def limit(self) -> int:

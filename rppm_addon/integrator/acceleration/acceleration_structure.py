@@ -12,6 +12,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
 from ..common.records.triangles import TRIANGLE_VERTICES  # noqa: F401  likewise
+from .instances import HitPaths, InstancedMeshes
 
 MARGIN = 2.0**-20
 """How far cells and boxes are widened, in radii of the scene. That is thirty times the rounding error of float
@@ -33,6 +34,7 @@ class AccelerationStructure(BufferSet):
         self._context, self._library = context, library
         self._has_one_sided = False
         self._traversal_buffers: dict[str, Bindable] = {}
+        self._instanced: InstancedMeshes | None = None
 
     def build(
         self,
@@ -42,13 +44,15 @@ class AccelerationStructure(BufferSet):
         scene_radius: float,
         resolution: int = 0,
         has_one_sided: bool = False,
+        instanced: InstancedMeshes | None = None,
     ) -> None:
         """Sort triangles into the structure.
 
         ``triangles`` holds three vec4 a triangle and must stay as it is while rays are traced. ``scene_radius``: the
         greatest distance from ``center`` of any vertex (meters); nothing farther out is hit. Rays may start anywhere,
         yet lose precision from some ten radii on. ``resolution``: of a deep cubemap. ``has_one_sided``: whether any
-        triangle is met by rays from outside only. Triangles with infinite or NaN coordinates are left out.
+        triangle is met by rays from outside only. ``instanced``: instances that rays are to meet as well, where the
+        structure has two levels. Triangles with infinite or NaN coordinates are left out.
         Raises ValueError for resolutions that there are not, and DeviceError where the device's limits are too low.
         """
         raise NotImplementedError
@@ -64,13 +68,25 @@ class AccelerationStructure(BufferSet):
         one_sided: dict[str, object] = {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else {}
         return {"TRAVERSAL": self.shader, **one_sided}
 
-    def trace(self, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths) -> None:
-        """Find the nearest hits of the active paths' Ray records; writes Hit records.
+    def trace(
+        self, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths = HitPaths.CAMERA
+    ) -> None:
+        """Find the nearest hits of the active paths' Ray records; writes Hit records. ``paths``: whose they are.
 
         A hit at just maximum_distance counts, one at distance 0 does not. Where nothing is hit,
         triangle is NO_TRIANGLE and the rest without meaning.
         """
-        self._trace("acceleration/trace.comp", {"Rays": rays, "Hits": hits}, active)
+        self._trace("acceleration/trace.comp", {"Rays": rays, "Hits": hits}, active, paths)
+        self.gather_hits(hits, active, paths)
+
+    def gather_hits(self, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths) -> None:
+        """Make world triangles of hits (HIT) on instances, for all that reads these."""
+        if self._instanced is not None:
+            self._instanced.gather_hits(hits, active, paths, self.traversal_buffers)
+
+    def first_hit(self, paths: HitPaths) -> int:
+        """The first hit triangle of a list of paths, for kernels that trace; 0 without instances."""
+        return 0 if self._instanced is None else self._instanced.first_hits[paths]
 
     def occluded(
         self,
@@ -99,8 +115,13 @@ class AccelerationStructure(BufferSet):
     ) -> None:
         """Find the nearest hits of shadow rays as trace does, of what counts for occluded."""
         kernel = "acceleration/shadow_hits_linked.comp" if linking else "acceleration/shadow_hits.comp"
-        self._trace(kernel, {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}, active)
+        buffers = {"Rays": rays, "LightTriangles": targets, "Hits": hits, **(linking or {})}
+        self._trace(kernel, buffers, active, HitPaths.SHADOW)
+        self.gather_hits(hits, active, HitPaths.SHADOW)
 
-    def _trace(self, kernel: str, buffers: Mapping[str, moderngl.Buffer], active: ActivePaths) -> None:
+    def _trace(
+        self, kernel: str, buffers: Mapping[str, moderngl.Buffer], active: ActivePaths, paths: HitPaths | None = None
+    ) -> None:
         program = self._library.compute(kernel, self.traversal_defines)
-        active.run(program, {**self.traversal_buffers, **buffers})
+        parameters = {"first_hit": self.first_hit(paths)} if paths is not None else None
+        active.run(program, {**self.traversal_buffers, **buffers}, parameters)

@@ -13,14 +13,17 @@ import numpy as np
 from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
-from .clustering import MAX_DEPTH, NODE, build_nodes
+from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, WorldPlacements
+from .bottom_levels import BottomLevels, instance_records, moved_nodes, top_level_nodes
+from .clustering import MAX_DEPTH, NODE
+from .leaves import LEAF, triangle_nodes
 
-LEAF = 0x80000000
 Constants("BvhNodes", LEAF=LEAF, MAX_DEPTH=MAX_DEPTH)
 StorageBlock("BvhNodes", "BvhNode bvh_nodes[];")
 
-_EMPTY_LEAF = np.uint32(LEAF)
 _TRIANGLE_BYTES = 48
 
 
@@ -30,6 +33,19 @@ class Bvh(AccelerationStructure):
     shader = "bvh/traverse.glsl"
     remedy = "simplify the geometry"
     _nodes = StorageBuffer("BVH nodes", NODE, texel_bytes=16, block="BvhNodes")
+    _instances = StorageBuffer(
+        "BVH instances", BOTTOM_LEVEL_INSTANCE, texel_bytes=16, remedy="remove instances", block="BottomLevelInstances"
+    )
+    _top_level = StorageBuffer("BVH top level", TOP_LEVEL, 1, block="TopLevelState")
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
+        self._bottom_levels = BottomLevels()
+        self._world_nodes = NODE.zeros(0)
+        """Hierarchy of the world triangles beside instances."""
+        self._world: WorldPlacements | None = None
+        """World triangles that this was built for."""
+        self._world_margin = 0.0
 
     def build(
         self,
@@ -39,64 +55,52 @@ class Bvh(AccelerationStructure):
         scene_radius: float,
         resolution: int = 0,
         has_one_sided: bool = False,
+        instanced: InstancedMeshes | None = None,
     ) -> None:
-        """AccelerationStructure.build."""
-        self._has_one_sided = has_one_sided
-        read = triangles.read(_TRIANGLE_BYTES * triangle_count) if triangle_count else b""
-        vertices = np.frombuffer(read, np.float32).reshape(-1, 3, 4)[..., :3]
-        nodes = bvh_nodes(vertices, max(float(scene_radius), 1e-20) * MARGIN)
-        self._nodes.require_items(len(nodes))
-        self._nodes.write(nodes)
-        self._traversal_buffers = {"Triangles": triangles, **self.blocks}
+        """AccelerationStructure.build. Hierarchies of meshes that have not changed stay."""
+        self._has_one_sided, self._instanced = has_one_sided, instanced
+        margin = max(float(scene_radius), 1e-20) * MARGIN
+        if instanced is None:
+            self._bottom_levels, self._world_nodes, self._world = BottomLevels(), NODE.zeros(0), None
+            nodes = triangle_nodes(_read_vertices(triangles, triangle_count), margin)
+            self._nodes.require_items(len(nodes))
+            self._nodes.write(nodes)
+            self._traversal_buffers = {"Triangles": triangles, "BvhNodes": self._nodes.buffer}
+            return
+        is_new = self._bottom_levels.build(instanced.meshes)
+        # A hierarchy whose margin is half of the wanted one still leaves fifteen times the rounding error.
+        if instanced.world != self._world or margin > 2.0 * self._world_margin:
+            self._world_nodes = triangle_nodes(_read_vertices(triangles, triangle_count), margin)
+            self._world, self._world_margin, is_new = instanced.world, margin, True
+        reach = float(scene_radius) + float(np.linalg.norm(np.fromiter(center, np.float64)))
+        self._write_levels(instanced, margin, reach, is_new)
+        self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hit_origins, **self.blocks}
+
+    def _write_levels(self, instanced: InstancedMeshes, margin: float, reach: float, is_new: bool) -> None:
+        """Write the top level, and where those are new the hierarchies of the meshes and of the world triangles."""
+        levels = self._bottom_levels
+        first_world = levels.node_count
+        first_top = first_world + len(self._world_nodes)
+        top = top_level_nodes(self._world_nodes, first_world, margin, instanced)
+        if self._nodes.require_items(first_top + len(top)) or is_new:
+            self._nodes.write(levels.nodes())
+            self._nodes.write(moved_nodes(self._world_nodes, first_world), first_world * NODE.size)
+        self._nodes.write(top, first_top * NODE.size)
+        self._instances.upload(instance_records(instanced, levels.roots, reach))
+        state = TOP_LEVEL.zeros(1)
+        state["root"], state["first_hit_triangle"] = first_top, instanced.first_hit_triangle
+        state["hit_triangle_count"] = instanced.hit_triangle_count
+        self._top_level.upload(state)
+
+    @property
+    def traversal_defines(self) -> dict[str, object]:
+        """AccelerationStructure.traversal_defines."""
+        if self._instanced is None:
+            return super().traversal_defines
+        return {**super().traversal_defines, "TRAVERSAL": "bvh/traverse_two_levels.glsl"}
 
 
-def bvh_nodes(vertices: np.ndarray, margin: float) -> np.ndarray:
-    """NODE records of a hierarchy of triangles, the root first; vertices: (n, 3, 3) float32, meters.
-
-    margin: how far boxes are widened, meters. Triangles with infinite or NaN coordinates are left out.
-    """
-    low, high, leaves = _leaves(vertices)
-    low -= np.float32(margin)
-    high += np.float32(margin)
-    if len(leaves) > 1:
-        return build_nodes(low, high, leaves)
-    root = NODE.zeros(1)
-    root["child0"] = root["child1"] = _EMPTY_LEAF
-    if len(leaves):
-        root["low0"], root["high0"], root["child0"] = low[:, 0], high[:, 0], leaves
-    return root
-
-
-def _leaves(vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Boxes of leaves, their corners (3, n) float32 in meters, and the leaves, (n,) uint32.
-
-    Two triangles that follow each other share a leaf where their common box has no more area than their own boxes
-    together, as the two of a quadrilateral do.
-    """
-    count = len(vertices)
-    low = np.minimum(np.minimum(vertices[:, 0], vertices[:, 1]), vertices[:, 2]).T.copy()
-    high = np.maximum(np.maximum(vertices[:, 0], vertices[:, 1]), vertices[:, 2]).T.copy()
-    is_finite = np.isfinite(low).all(axis=0) & np.isfinite(high).all(axis=0)
-    even, odd = slice(0, count - count % 2, 2), slice(1, None, 2)
-    common_low, common_high = np.minimum(low[:, even], low[:, odd]), np.maximum(high[:, even], high[:, odd])
-    with np.errstate(over="ignore", invalid="ignore"):
-        areas = _half_areas(low, high)
-        are_paired = is_finite[even] & is_finite[odd]
-        are_paired &= _half_areas(common_low, common_high) <= areas[even] + areas[odd]
-    low[:, even], high[:, even] = (
-        np.where(are_paired, common_low, low[:, even]),
-        np.where(are_paired, common_high, high[:, even]),
-    )
-    sizes = np.ones(count, np.uint32)
-    sizes[even][are_paired] = 2
-    is_leaf = is_finite
-    is_leaf[odd] &= ~are_paired
-    first = np.flatnonzero(is_leaf)
-    leaves = np.uint32(LEAF) | first.astype(np.uint32) << np.uint32(2) | sizes[first]
-    return np.take(low, first, axis=1), np.take(high, first, axis=1), leaves
-
-
-def _half_areas(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Half of the area of boxes, (n,) square meters."""
-    x, y, z = high - low
-    return x * (y + z) + y * z
+def _read_vertices(triangles: moderngl.Buffer, count: int) -> np.ndarray:
+    """(count, 3, 3) float32 vertices of triangles, meters."""
+    read = triangles.read(_TRIANGLE_BYTES * count) if count else b""
+    return np.frombuffer(read, np.float32).reshape(-1, 3, 4)[..., :3]

@@ -9,6 +9,7 @@ from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable, ComputeProgram
 from ...gl.programs.programs import ProgramLibrary
+from ..acceleration.instances import HitPaths
 from ..common.active_paths import ActivePaths, PathList
 from ..common.band import Band
 from ..common.records.random_stages import RandomStage
@@ -46,6 +47,7 @@ Record(
     stage="uint",
     first_step="uint",
     end_step="uint",
+    first_hit="uint",
 )
 
 _LAST_STEPS = (4, 8, 16, 32, 64, 96, 128, 160, 192, 224, 256)
@@ -119,6 +121,7 @@ class Subsurface(Stage):
         }
         enter, leave = programs
         walk = self._library.compute("camera_paths/subsurface/walk.comp", context.acceleration.traversal_defines)
+        first_hit = context.acceleration.first_hit(HitPaths.SUBSURFACE)
 
         active.run(enter, blocks, parameters)
         self._entered.take(active, self._rays.buffer)
@@ -129,8 +132,9 @@ class Subsurface(Stage):
         for end in _LAST_STEPS:
             if walking.known_empty:
                 break
-            steps = {"stage": stage, "first_step": first, "end_step": end}
+            steps = {"stage": stage, "first_step": first, "end_step": end, "first_hit": first_hit}
             walking.run(walk, blocks, parameters | steps)
             walking.keep(self._rays.buffer)
             first = end
+        context.acceleration.gather_hits(self._hits.buffer, self._entered, HitPaths.SUBSURFACE)
         self._entered.run(leave, blocks, parameters)

@@ -32,6 +32,7 @@ from ...gl.context.context import TEXEL_SIZE, Context
 from ...gl.programs.programs import ProgramLibrary
 from ...gl.programs.texel_sources import DEFINE as TEXEL_BUFFERS
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
+from ..acceleration.instances import InstancedMeshes
 from ..common.require import require
 from .build_buffers import BuildBuffers, LevelTooFineError, ListTooShortError
 from .clusters import Clusters
@@ -102,12 +103,15 @@ class DeepCubemap(AccelerationStructure):
         scene_radius: float,
         resolution: int = 0,
         has_one_sided: bool = False,
+        instanced: InstancedMeshes | None = None,
     ) -> None:
-        """AccelerationStructure.build.
+        """AccelerationStructure.build, of one level: ValueError is raised where instances are given.
 
         ``resolution``: largest number of cells along a face's side, a power of two from 4 to FINEST_RESOLUTION; 0
         stands for FINEST_RESOLUTION.
         """
+        if instanced is not None:
+            raise ValueError("a deep cubemap has one level; expand the instances")
         resolution = resolution or FINEST_RESOLUTION
         if not 4 <= resolution <= FINEST_RESOLUTION or resolution & (resolution - 1):
             raise ValueError(f"cubemap resolution {resolution} is not a power of two from 4 to {FINEST_RESOLUTION}")

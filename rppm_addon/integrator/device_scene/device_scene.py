@@ -166,7 +166,11 @@ class DeviceScene:
             changes.geometry |= self.materials.place_media(scene)
         if changes.geometry:
             self.geometry.build(
-                scene, self.materials.default_material, self._motion.swept, self.materials.media.places.slots
+                scene,
+                self.materials.default_material,
+                self._motion.swept,
+                self.materials.media.places.slots,
+                self.acceleration.instanced_members(self._motion.scene),
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):

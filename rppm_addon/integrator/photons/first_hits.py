@@ -14,6 +14,7 @@ from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.errors import DeviceError
 from ...scene.settings import FirstPhotonHits
+from ..acceleration.instances import HitPaths
 from ..common.active_paths import ActivePaths, PathList
 from ..common.require import require
 from ..device_scene.stage_context import StageContext
@@ -61,7 +62,9 @@ class FirstHits(BufferSet):
             self._lights_built = context.lights.times_built
             self.forget()
         wanted = context.settings.first_photon_hits
-        if wanted is FirstPhotonHits.AUTOMATIC:
+        if context.geometry.instanced is not None:  # a light G-buffer draws world triangles
+            wanted = FirstPhotonHits.TRACED
+        elif wanted is FirstPhotonHits.AUTOMATIC:
             wanted = self._automatic(context, rays, hits, active)
         if wanted is FirstPhotonHits.TRACED and self._gbuffer is not None:
             self.disown(self._gbuffer)
@@ -125,8 +128,8 @@ class FirstHits(BufferSet):
         active: ActivePaths,
     ) -> None:
         if route is FirstPhotonHits.TRACED:
-            context.acceleration.trace(rays, hits, active)
+            context.acceleration.trace(rays, hits, active, HitPaths.PHOTON)
             return
         require(self._gbuffer).find(context.blocks, rays, hits, active.capacity, self._left)
         if not self._left.known_empty:
-            context.acceleration.trace(rays, hits, self._left)
+            context.acceleration.trace(rays, hits, self._left, HitPaths.PHOTON)

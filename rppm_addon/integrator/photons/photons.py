@@ -10,6 +10,7 @@ from ...gl.context.context import Context
 from ...gl.programs.program import GROUP_SIZE
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight
+from ..acceleration.instances import HitPaths
 from ..camera_paths.subsurface import Subsurface
 from ..common.active_paths import ActivePaths, PathList
 from ..common.iteration import Iteration
@@ -141,7 +142,7 @@ class Photons(Stage):
             self._active.keep(self._rays.buffer)
             if not self._active.bound(segment):
                 return False
-            context.acceleration.trace(self._rays.buffer, self._hits.buffer, self._active)
+            context.acceleration.trace(self._rays.buffer, self._hits.buffer, self._active, HitPaths.PHOTON)
         self._begin_segment(segment)
         return True
 

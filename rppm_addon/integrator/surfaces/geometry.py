@@ -3,22 +3,31 @@
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers.buffers import RANGE_ITEMS
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
+from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
+from ..acceleration.instances import HitPaths, InstancedMeshes, WorldPlacements
+from ..common.active_paths import ActivePaths
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
+from ..common.require import require
+from ..common.stage_sizes import StageSizes
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
+from .hit_triangles import HitTriangles
+from .object_triangles import ObjectTriangles
 
 log = logging.getLogger(__name__)
 
@@ -112,7 +121,7 @@ def affine_inverses(matrices: np.ndarray) -> np.ndarray:
 
 @dataclass(slots=True)
 class Placement:
-    """An instance and its first world triangle."""
+    """An instance and its first world triangle, which it has where it is expanded to world triangles."""
 
     instance: Instance
     first_triangle: int
@@ -136,15 +145,26 @@ class Geometry(BufferSet):
         self._context = context
         self._gather = library.compute("surfaces/geometry/gather.comp")
         self._inputs = self.own(GatherInputs(context, library))
-        """No part of the set: other programs than gather.comp do not read them."""
+        """No part of the set: other programs than those that gather do not read them."""
+        self._hits = self.own(HitTriangles(context, library))
+        self._objects = self.own(ObjectTriangles(context, library))
+        self.instanced: InstancedMeshes | None = None
+        """Instances that are not expanded, which rays place in the world; None where there are none."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
+        self._world: WorldPlacements | None = None
+        """Sources of the world triangles."""
         self.triangle_count = 0
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
         self.placements: list[Placement] = []
         self.matrices, self.boxes = np.zeros((0, 4, 4)), np.zeros((0, 2, 3))
         self.bounds_low = self.bounds_high = np.zeros(3)
+
+    @property
+    def placement_blocks(self) -> dict[str, Bindable]:
+        """Blocks of the instances and the materials of their slots."""
+        return {name: self._inputs.blocks[name] for name in ("Instances", "SlotMaterials")}
 
     @property
     def center(self) -> np.ndarray:
@@ -162,10 +182,12 @@ class Geometry(BufferSet):
         default_material: int,
         swept: tuple[np.ndarray, np.ndarray] | None = None,
         slots: list[Sequence[int]] | None = None,
+        is_instanced: np.ndarray | None = None,
     ) -> None:
         """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
         bounds enclose in any case, each (3,), low and high. ``slots``: the materials of the slots of each instance, in
-        place of its own.
+        place of its own. ``is_instanced``: (instances,) bool, those that are not expanded to world triangles; None for
+        none.
 
         Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
         instances only, bending a mesh its positions and normals. Whoever changes an array gives a new one.
@@ -182,10 +204,13 @@ class Geometry(BufferSet):
         chosen = [index for index, instance in enumerate(scene.instances) if instance.mesh in places]
         instances = [scene.instances[index] for index in chosen]
         which = np.array([places[instance.mesh] for instance in instances], np.int64)
-        lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which]
+        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
+        is_expanded = np.ones(len(chosen), bool)
+        if is_instanced is not None:  # rays go on in object space, which flat ones do not have
+            is_expanded = ~(is_instanced[chosen] & affine_inverses(self.matrices).any(axis=(1, 2)))
+        lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which] * is_expanded
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
-        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
         entries = INSTANCE_ENTRY.zeros(len(instances))
         entries["first_triangle"] = ends - lengths
         slot_materials: list[int] = []
@@ -213,8 +238,20 @@ class Geometry(BufferSet):
         self._enclose(boxes[which], swept)
         self._inputs.upload_meshes(meshes)
         self._inputs.instances.upload(entries)
-        self._inputs.slot_materials.upload(np.array(slot_materials or [default_material], np.uint32))
-        self._require_triangles(instances, lengths)
+        slots_uploaded = np.array(slot_materials or [default_material], np.uint32)
+        self._inputs.slot_materials.upload(slots_uploaded)
+        expanded = np.flatnonzero(is_expanded)
+        placed_meshes = [meshes[index] for index in which[expanded].tolist()]
+        # As bytes: copies of records leave the padding between members undefined.
+        placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
+        before, self._world = self._world, WorldPlacements(placed_meshes, expanded, placed_by, slots_uploaded)
+        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries)
+        if self._require_triangles(instances, lengths) or before != self._world:
+            self._gather_triangles(len(instances))
+        self._objects.gather(self._inputs.blocks, self.triangles)
+
+    def _gather_triangles(self, instance_count: int) -> None:
+        """Gather the triangles of all that is expanded."""
         inputs = self._inputs.blocks
         for triangles, attributes in zip(
             self.triangles.ranges(self.triangle_count), self.attributes.ranges(self.triangle_count), strict=True
@@ -226,16 +263,52 @@ class Geometry(BufferSet):
                     "fallback_point": self.center,
                     "first_triangle": triangles.first,
                     "triangle_count": triangles.count,
-                    "instance_count": len(instances),
+                    "instance_count": instance_count,
                 },
             )
 
-    def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> None:
-        """Have room for the triangles of instances, which have so many each (n,). Raises DeviceError, which says whose
-        they are."""
+    def _place_instanced(
+        self, scene: Scene, meshes: list[Mesh], which: np.ndarray, placements: np.ndarray, entries: np.ndarray
+    ) -> None:
+        """Have places behind the world triangles for what instances need that are not expanded. ``which``: the mesh of
+        each placement, ``placements``: the numbers of those instances."""
+        self.instanced = None
+        first = _next_range(self.triangle_count)
+        self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
+        used, one, mesh_of = np.unique(which[placements], return_index=True, return_inverse=True)
+        shared = [meshes[index] for index in used]
+        self._objects.place(_next_range(first + self._hits.count), shared, entries[placements[one]])
+        if not len(placements):
+            return
+        self.instanced = InstancedMeshes(
+            shared,
+            self._objects.first_triangles,
+            mesh_of.reshape(-1),
+            placements,
+            self.matrices[placements],
+            affine_inverses(self.matrices[placements]),
+            entries[placements],
+            self.boxes[placements],
+            require(self._world),
+            self._hits.first,
+            self._hits.count,
+            self._hits.origins.buffer,
+            self._hits.first_hits,
+            self._gather_hits,
+        )
+
+    def _gather_hits(
+        self, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths, blocks: Mapping[str, Bindable]
+    ) -> None:
+        outputs = self.triangles, self.attributes
+        self._hits.gather(hits, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
+
+    def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> bool:
+        """Have room for the triangles of instances, which have so many each (n,); returns whether the buffers are new.
+        Raises DeviceError, which says whose they are."""
         try:
-            self.triangles.require_items(self.triangle_count)
-            self.attributes.require_items(self.triangle_count)
+            is_new = self.triangles.require_items(max(self.triangle_count, self._objects.first + self._objects.count))
+            is_new |= self.attributes.require_items(max(self.triangle_count, self._hits.first + self._hits.count))
         except DeviceLostError:
             raise
         except DeviceError as error:
@@ -245,6 +318,7 @@ class Geometry(BufferSet):
             raise DeviceError(
                 f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most}{held})"
             ) from error
+        return is_new
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
         """Finite bounds of each mesh, found once for each array of positions."""
@@ -267,6 +341,11 @@ class Geometry(BufferSet):
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
+
+
+def _next_range(item: int) -> int:
+    """First item from one on where a range may begin."""
+    return -(-item // RANGE_ITEMS) * RANGE_ITEMS
 
 
 def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> str:

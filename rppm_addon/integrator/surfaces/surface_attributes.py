@@ -27,7 +27,6 @@ SHADING_INSTANCE = Record(
     location="vec3",
     random="float",
     object_index="uint",
-    first_triangle="uint",
     particle_index="float",
     particle_random="float",
     particle_age="float",
@@ -96,7 +95,6 @@ class SurfaceAttributes(BufferSet):
         if instances:
             _fill(records, instances, geometry.matrices, scene.meshes)
             self.has_terminators = any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
-            records["first_triangle"] = [placement.first_triangle for placement in geometry.placements]
         self._instances.upload(records)
         self._upload_values(scene.meshes, instances, mirrored(geometry.matrices) if names else [], names)
 

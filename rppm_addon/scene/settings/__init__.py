@@ -1,7 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Render settings, in a module for each subject."""
 
-from .acceleration import CUBEMAP_COSTS, AccelerationStructure, DensityEstimation, FirstCameraHits, FirstPhotonHits
+from .acceleration import (
+    CUBEMAP_COSTS,
+    AccelerationStructure,
+    DensityEstimation,
+    FirstCameraHits,
+    FirstPhotonHits,
+    Instancing,
+)
 from .denoising import DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
 from .film import PixelFilter
 from .light_paths import MOST_COUNTED_BOUNCES, MOST_SEGMENTS, CausticKind, DirectLight
@@ -22,6 +29,7 @@ __all__ = [
     "DirectLight",
     "FirstCameraHits",
     "FirstPhotonHits",
+    "Instancing",
     "PixelFilter",
     "RenderSettings",
 ]

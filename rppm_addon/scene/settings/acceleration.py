@@ -57,6 +57,17 @@ class AccelerationStructure(enum.Enum):
     """A bounding volume hierarchy."""
 
 
+class Instancing(enum.Enum):
+    """Place of the triangles of instances: the same picture, with another need of memory."""
+
+    AUTOMATIC = "AUTOMATIC"
+    """Two levels for millions of triangles of few meshes, otherwise expanded."""
+    EXPANDED = "EXPANDED"
+    """Each instance has triangles of its own in the world."""
+    TWO_LEVELS = "TWO_LEVELS"
+    """Rays that meet an instance go on in its mesh, which all its instances share."""
+
+
 @dataclass
 class AccelerationSettings(SettingGroup):
     """Choices between rasterization, rays and grids."""
@@ -130,6 +141,23 @@ class AccelerationSettings(SettingGroup):
             AccelerationStructure.BVH: (
                 "BVH",
                 "A bounding volume hierarchy, which the processor builds; it takes less memory",
+            ),
+        },
+    )
+    instancing: Instancing = setting(
+        Instancing.AUTOMATIC,
+        "Instances",
+        "Where the triangles of instances are: any way gives the same picture",
+        choices={
+            Instancing.AUTOMATIC: (
+                "Automatic",
+                "Two levels where the instances of a few meshes have millions of triangles, otherwise expanded",
+            ),
+            Instancing.EXPANDED: ("Expanded", "Each instance has triangles of its own: rays are faster"),
+            Instancing.TWO_LEVELS: (
+                "Two Levels",
+                "Instances share the triangles of their mesh: memory does not grow with their number, and moving them "
+                "rebuilds little. What emits light or has a volume is expanded all the same. Needs the BVH",
             ),
         },
     )

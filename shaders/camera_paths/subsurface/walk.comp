@@ -3,6 +3,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl
 // Some steps of random walks below surfaces, as Cycles takes them: directions and distances are guided to the surface
 // where the walk went in, or to an opposite one that is near.
 // Krivanek and d'Eon, A Zero-Variance-Based Sampling Scheme for Monte Carlo Subsurface Scattering (2014).
@@ -153,6 +154,7 @@ void main() {
     Ray ray = walk_rays[index];
     if (parameters.first_step == 0u) walk.instance = attributes[ray.source_triangle].instance;
     traced_instance = walk.instance;
+    begin_path(parameters.first_hit + 2u * index);
     RandomSequence start = random_sequence(iteration.seed, iteration.number, parameters.stage, parameters.segment,
                                            parameters.first_path + index);
     Hit hit = Hit(NO_TRIANGLE, 0.0, 0.0, 0.0);

@@ -12,7 +12,7 @@ from deep_cubemap_scenes import PLAIN, bits, room_with_meshes
 from moving_scenes import everything_moves, films_of_moved
 
 from rppm_addon.gl.context.context import Context
-from rppm_addon.integrator.bvh import bvh, clustering
+from rppm_addon.integrator.bvh import bvh, clustering, leaves
 from rppm_addon.integrator.device_scene.acceleration import Acceleration
 from rppm_addon.scene import AccelerationStructure
 from rppm_addon.scene.errors import DeviceError
@@ -36,7 +36,7 @@ def depth_of(nodes: np.ndarray) -> int:
     depths = np.ones(len(nodes), int)
     for number, node in enumerate(nodes):
         for child in (node["child0"], node["child1"]):
-            if child < bvh.LEAF:
+            if child < leaves.LEAF:
                 assert child > number
                 depths[child] = depths[number] + 1
     return int(depths.max())
@@ -44,12 +44,12 @@ def depth_of(nodes: np.ndarray) -> int:
 
 def leaves_of(nodes: np.ndarray) -> np.ndarray:
     children = np.concatenate([nodes["child0"], nodes["child1"]])
-    return np.sort(children[children >= bvh.LEAF])
+    return np.sort(children[children >= leaves.LEAF])
 
 
 def assert_boxes_enclose(nodes: np.ndarray) -> None:
     for side in "01":
-        for box in nodes[nodes[f"child{side}"] < bvh.LEAF]:
+        for box in nodes[nodes[f"child{side}"] < leaves.LEAF]:
             inner = nodes[box[f"child{side}"]]
             np.testing.assert_array_equal(box[f"low{side}"], np.minimum(inner["low0"], inner["low1"]))
             np.testing.assert_array_equal(box[f"high{side}"], np.maximum(inner["high0"], inner["high1"]))
@@ -67,9 +67,9 @@ HARD = {
 @pytest.mark.parametrize("place", HARD)
 def test_hierarchies_hold_each_box_once_and_are_not_deep(place):
     low = HARD[place](np.random.default_rng(3), 3001).astype(np.float32)
-    leaves = np.uint32(bvh.LEAF) | np.arange(3001, dtype=np.uint32)
-    nodes = clustering.build_nodes(low, low + np.float32(0.01), leaves.copy())
-    np.testing.assert_array_equal(leaves_of(nodes), leaves)
+    numbered = np.uint32(leaves.LEAF) | np.arange(3001, dtype=np.uint32)
+    nodes = clustering.build_nodes(low, low + np.float32(0.01), numbered.copy())
+    np.testing.assert_array_equal(leaves_of(nodes), numbered)
     assert_boxes_enclose(nodes)
     assert depth_of(nodes) <= clustering.MAX_DEPTH
 
@@ -77,8 +77,8 @@ def test_hierarchies_hold_each_box_once_and_are_not_deep(place):
 def test_hierarchies_are_the_same_each_time():
     """Whatever the number of threads that build them."""
     low = np.random.default_rng(4).normal(size=(3, 50_000)).astype(np.float32)
-    leaves = np.uint32(bvh.LEAF) | np.arange(50_000, dtype=np.uint32)
-    built = [clustering.build_nodes(low.copy(), low + np.float32(0.01), leaves.copy()) for _ in range(2)]
+    numbered = np.uint32(leaves.LEAF) | np.arange(50_000, dtype=np.uint32)
+    built = [clustering.build_nodes(low.copy(), low + np.float32(0.01), numbered.copy()) for _ in range(2)]
     np.testing.assert_array_equal(*built)
     assert depth_of(built[0]) < 40
 
@@ -87,9 +87,9 @@ def test_quadrilaterals_share_a_leaf():
     """Two triangles that do not lie together share none."""
     square = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 0, 0], [1, 1, 0], [0, 1, 0]]], np.float32)
     strangers = square + np.float32([[[5, 0, 0]], [[0, 0, 9]]])
-    nodes = bvh.bvh_nodes(np.concatenate([square, strangers]), 0.0)
+    nodes = leaves.triangle_nodes(np.concatenate([square, strangers]), 0.0)
     np.testing.assert_array_equal(leaves_of(nodes) & 3, [2, 1, 1])
-    np.testing.assert_array_equal((leaves_of(nodes) & ~np.uint32(bvh.LEAF)) >> 2, [0, 2, 3])
+    np.testing.assert_array_equal((leaves_of(nodes) & ~np.uint32(leaves.LEAF)) >> 2, [0, 2, 3])
 
 
 def test_what_the_device_cannot_hold_is_an_error(context, library, monkeypatch):

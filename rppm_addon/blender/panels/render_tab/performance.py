@@ -67,7 +67,9 @@ class RPPM_PT_acceleration_structure(RppmPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
-        self.column().prop(context.scene.rppm, "acceleration_structure", text="Structure")
+        column = self.column()
+        column.prop(context.scene.rppm, "acceleration_structure", text="Structure")
+        column.prop(context.scene.rppm, "instancing", text="Instances")
 
 
 class RPPM_PT_status(RppmPanel, bpy.types.Panel):

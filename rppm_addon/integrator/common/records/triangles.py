@@ -14,9 +14,10 @@ TRIANGLE_ATTRIBUTES = Record(
     uv1="vec2",
     uv2="vec2",
     instance="uint",
-    unused="uint",
+    mesh_triangle="uint",
 )
-"""Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle."""
+"""Shading normals (octahedral, two 16-bit parts), UV, material and instance of a world triangle, and its number in the
+mesh."""
 StorageBlock("Attributes", "TriangleAttributes attributes[];")
 TRIANGLE_VERTICES = Record("TriangleVertices", vertex0="vec4", vertex1="vec4", vertex2="vec4")
 StorageBlock("Triangles", "vec4 triangle_vertices[];")

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Instances whose triangles rays place in the world: the top level of two-level acceleration structures."""
+
+import enum
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from ...gl.buffers.constants import Constants
+from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.programs.program import Bindable
+from ...scene.meshes import Mesh
+from ...scene.storage.sharing import same_members
+from ..common.active_paths import ActivePaths
+
+TOP_LEVEL = Record("TopLevel", root="uint", first_hit_triangle="uint", hit_triangle_count="uint")
+"""The root of the top level; the hit triangles: the first and their number, two for each path."""
+StorageBlock("TopLevelState", "TopLevel top_level;")
+BOTTOM_LEVEL_INSTANCE = Record(
+    "BottomLevelInstance",
+    to_object0="vec4",
+    to_object1="vec4",
+    to_object2="vec4",
+    row0="vec4",
+    row1="vec4",
+    row2="vec4",
+    pivot="vec3",
+    first_triangle="uint",
+    root="uint",
+    placement="uint",
+    mirrored="uint",
+    margin="float",
+    set_code="float",
+)
+"""An instance of a mesh that has an acceleration structure of its own.
+
+``to_object``: the rows of its world-to-object matrix. ``row``, ``pivot``: vertices, less the pivot, are placed in the
+world by these rows. ``first_triangle``: of its mesh in object space, in the block Triangles; ``root``: of its mesh's
+structure. ``placement``: its number among all instances. ``margin``: by which boxes of the mesh are widened, in object
+space. ``set_code``: as of triangles (shaders/common/light_sets.glsl).
+"""
+StorageBlock("BottomLevelInstances", "BottomLevelInstance bottom_level_instances[];")
+StorageBlock("HitOrigins", "uvec2 hit_origins[];")
+"""For each hit triangle the instance, of BottomLevelInstances, and the triangle of its mesh."""
+Record("TraceParameters", first_hit="uint")
+INSTANCE_LEAF = 3
+"""In place of the number of triangles of a leaf: it holds an instance."""
+Constants("InstanceLeaf", INSTANCE_LEAF=INSTANCE_LEAF)
+
+
+class HitPaths(enum.Enum):
+    """Lists of paths whose hits other kernels read, and which have hit triangles of their own."""
+
+    CAMERA = "camera"
+    PHOTON = "photon"
+    SHADOW = "shadow"
+    SUBSURFACE = "subsurface"
+
+
+class WorldPlacements:
+    """All that world triangles and their attributes are made of: equal to others of which the same ones are made."""
+
+    def __init__(self, meshes: list[Mesh], *places: np.ndarray) -> None:
+        """meshes: of each expanded instance; places: arrays by which these are placed."""
+        self._arrays = [array for mesh in meshes for array in _arrays_of(mesh)]
+        self._places = [array.tobytes() for array in places]
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, WorldPlacements)
+            and same_members(self._arrays, other._arrays)
+            and self._places == other._places
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # compared only
+
+
+def _arrays_of(mesh: Mesh) -> tuple[np.ndarray | None, ...]:
+    return (
+        mesh.positions, mesh.corner_vertices, mesh.triangle_corners, mesh.corner_normals, mesh.corner_uv,
+        mesh.triangle_slots,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class InstancedMeshes:
+    """Instances of a scene that are not expanded to world triangles, and their meshes."""
+
+    meshes: list[Mesh]
+    mesh_first_triangles: np.ndarray
+    """(meshes,) int64, the first triangle of each mesh in the block Triangles, in object space."""
+    which: np.ndarray
+    """(n,) int64, the mesh of each instance, by its place in ``meshes``."""
+    placements: np.ndarray
+    """(n,) int64, the number of each among all instances."""
+    matrices: np.ndarray
+    """(n, 4, 4) float64, object to world."""
+    inverses: np.ndarray
+    """(n, 3, 4) float64, the upper rows of the inverse matrices."""
+    entries: np.ndarray
+    """(n,) records with row0, row1, row2, pivot and set_code, as the triangles of expanded instances are placed by."""
+    boxes: np.ndarray
+    """(n, 2, 3) float64, low and high corners in the world, meters."""
+    world: WorldPlacements
+    first_hit_triangle: int
+    hit_triangle_count: int
+    hit_origins: moderngl.Buffer
+    first_hits: dict[HitPaths, int]
+    """The first hit triangle of each list of paths, counted from first_hit_triangle."""
+    gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
+    """Makes world triangles of the hits (HIT) of active paths of a list, by the blocks of the acceleration structure."""

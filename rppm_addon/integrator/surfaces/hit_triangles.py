@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""World-space triangles of what rays hit on instances that are not expanded."""
+
+from collections.abc import Mapping
+
+import moderngl
+import numpy as np
+
+from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers.buffers import RANGE_ITEMS, GrowingBuffer
+from ...gl.buffers.records import Record
+from ...gl.context.context import Context
+from ...gl.programs.program import Bindable
+from ...gl.programs.programs import ProgramLibrary
+from ..acceleration.instances import HitPaths
+from ..common.active_paths import ActivePaths
+from ..common.stage_sizes import StageSizes, band_pixels, photon_paths, subsurface_walks
+
+Record("GatherHitsParameters", fallback_point="vec3", first_hit="uint", hit_count="uint")
+_PATHS = {
+    HitPaths.CAMERA: band_pixels,
+    HitPaths.PHOTON: photon_paths,
+    HitPaths.SHADOW: band_pixels,
+    HitPaths.SUBSURFACE: subsurface_walks,
+}
+"""Number of paths of each list, by the sizes of a scene."""
+
+
+class HitTriangles(BufferSet):
+    """Places in the blocks Triangles and Attributes for the triangles that paths hit, two for each path.
+
+    Stages read a hit triangle as they read any other: ``gather`` fills it in once rays have been traced.
+    """
+
+    remedy = "lower the resolution or the photons per iteration"
+    origins = StorageBuffer("hit origins", "uvec2", block="HitOrigins")
+
+    def __init__(self, context: Context, library: ProgramLibrary) -> None:
+        super().__init__(context, library)
+        self._gather = library.compute("surfaces/geometry/gather_hits.comp")
+        self.first = self.count = 0
+        """First hit triangle, and their number."""
+        self.first_hits: dict[HitPaths, int] = {}
+        """The first hit triangle of each list of paths, counted from ``first``."""
+        self._counts: dict[HitPaths, int] = {}
+
+    def place(self, first: int, sizes: StageSizes | None) -> None:
+        """Have places for the paths of a scene of these sizes from a triangle on; for none without sizes."""
+        self.first, self.count, self.first_hits = first, 0, {}
+        if sizes is None:
+            return
+        for paths, size in _PATHS.items():
+            self.first_hits[paths] = self.count
+            self._counts[paths] = -(-2 * size(sizes) // RANGE_ITEMS) * RANGE_ITEMS
+            self.count += self._counts[paths]
+        self.origins.require_items(self.count)
+
+    def gather(
+        self,
+        hits: moderngl.Buffer,
+        active: ActivePaths,
+        paths: HitPaths,
+        blocks: Mapping[str, Bindable],
+        outputs: tuple[GrowingBuffer, GrowingBuffer],
+        fallback_point: np.ndarray,
+    ) -> None:
+        """Write the triangles of the hits (HIT) of active paths of a list.
+
+        ``blocks``: the inputs of gathering, and those of the acceleration structure; ``outputs``: world triangles and
+        their attributes; ``fallback_point``: of triangles that are not finite, (3,) meters.
+        """
+        first, count = self.first_hits[paths], self._counts[paths]
+        ((triangles,), (attributes,)) = (buffer.ranges(count, self.first + first) for buffer in outputs)
+        buffers = {**blocks, **self.blocks, "Hits": hits, "Triangles": triangles, "Attributes": attributes}
+        active.run(self._gather, buffers, {"fallback_point": fallback_point, "first_hit": first, "hit_count": count})
