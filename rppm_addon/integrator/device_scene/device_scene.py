@@ -97,6 +97,8 @@ class DeviceScene:
         center_tolerance: how far from where the deep cubemap's center should be it may stay, in radii of the scene,
         which changes no picture. Raises SceneError or DeviceError; what is built then is built anew the next time.
         """
+        if scene.instance_arrays:
+            raise ValueError("the scene has arrays of instances; give Scene.expanded() to the integrator")
         scene = self.centering.centered(scene)
         before = self._uploaded_scene
         changes = changes_between(before, scene)
