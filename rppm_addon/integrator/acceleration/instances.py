@@ -102,6 +102,8 @@ class InstancedMeshes:
     """(n, 3, 4) float64, the upper rows of the inverse matrices."""
     entries: np.ndarray
     """(n,) records with row0, row1, row2, pivot and set_code, as the triangles of expanded instances are placed by."""
+    first_materials: np.ndarray
+    """(n,) uint32, the material of the first slot of each."""
     boxes: np.ndarray
     """(n, 2, 3) float64, low and high corners in the world, meters."""
     world: WorldPlacements

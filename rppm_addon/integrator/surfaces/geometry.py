@@ -162,11 +162,6 @@ class Geometry(BufferSet):
         self.bounds_low = self.bounds_high = np.zeros(3)
 
     @property
-    def placement_blocks(self) -> dict[str, Bindable]:
-        """Blocks of the instances and the materials of their slots."""
-        return {name: self._inputs.blocks[name] for name in ("Instances", "SlotMaterials")}
-
-    @property
     def center(self) -> np.ndarray:
         """Center of the bounding sphere, (3,) meters."""
         return 0.5 * (self.bounds_low + self.bounds_high)
@@ -245,7 +240,8 @@ class Geometry(BufferSet):
         # As bytes: copies of records leave the padding between members undefined.
         placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
         before, self._world = self._world, WorldPlacements(placed_meshes, expanded, placed_by, slots_uploaded)
-        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries)
+        first_materials = slots_uploaded[entries["first_slot"]]
+        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials)
         if self._require_triangles(instances, lengths) or before != self._world:
             self._gather_triangles(len(instances))
         self._objects.gather(self._inputs.blocks, self.triangles)
@@ -268,10 +264,17 @@ class Geometry(BufferSet):
             )
 
     def _place_instanced(
-        self, scene: Scene, meshes: list[Mesh], which: np.ndarray, placements: np.ndarray, entries: np.ndarray
+        self,
+        scene: Scene,
+        meshes: list[Mesh],
+        which: np.ndarray,
+        placements: np.ndarray,
+        entries: np.ndarray,
+        first_materials: np.ndarray,
     ) -> None:
         """Have places behind the world triangles for what instances need that are not expanded. ``which``: the mesh of
-        each placement, ``placements``: the numbers of those instances."""
+        each placement, ``placements``: the numbers of those instances; ``first_materials``: (n,) the material of each
+        placement's first slot."""
         self.instanced = None
         first = _next_range(self.triangle_count)
         self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
@@ -288,6 +291,7 @@ class Geometry(BufferSet):
             self.matrices[placements],
             affine_inverses(self.matrices[placements]),
             entries[placements],
+            first_materials[placements],
             self.boxes[placements],
             require(self._world),
             self._hits.first,
@@ -307,8 +311,12 @@ class Geometry(BufferSet):
         """Have room for the triangles of instances, which have so many each (n,); returns whether the buffers are new.
         Raises DeviceError, which says whose they are."""
         try:
-            is_new = self.triangles.require_items(max(self.triangle_count, self._objects.first + self._objects.count))
-            is_new |= self.attributes.require_items(max(self.triangle_count, self._hits.first + self._hits.count))
+            triangles = attributes = self.triangle_count
+            if self.instanced is not None:
+                triangles = self._objects.first + self._objects.count
+                attributes = self._hits.first + self._hits.count
+            is_new = self.triangles.require_items(triangles)
+            is_new |= self.attributes.require_items(attributes)
         except DeviceLostError:
             raise
         except DeviceError as error:

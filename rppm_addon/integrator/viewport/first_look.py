@@ -29,8 +29,12 @@ PLAIN_SURFACE = Record(
 StorageBlock("PlainSurfaces", "PlainSurface plain_surfaces[];")
 StorageBlock("InstanceOpacities", "float instance_opacities[];")
 """Below 0 of what the camera does not see, 0 of a holdout."""
-StorageBlock("DrawnInstances", "uint drawn_instances[];")
-"""Numbers of the instances that are not expanded, mesh by mesh."""
+DRAWN_INSTANCE = Record(
+    "DrawnInstance", row0="vec4", row1="vec4", row2="vec4", pivot="vec3", material="uint", number="uint"
+)
+StorageBlock("DrawnInstances", "DrawnInstance drawn_instances[];")
+"""Instances that are not expanded, mesh by mesh: what places their vertices (BottomLevelInstance), the material of the
+first slot, and the number among all instances."""
 Record(
     "FirstLookParameters",
     sky="vec3",
@@ -58,7 +62,7 @@ class FirstLook(BufferSet):
 
     _surfaces = StorageBuffer("plain surfaces", PLAIN_SURFACE, block="PlainSurfaces")
     _opacities = StorageBuffer("opacities of instances", "float", block="InstanceOpacities")
-    _drawn_instances = StorageBuffer("drawn instances", "uint", block="DrawnInstances")
+    _drawn_instances = StorageBuffer("drawn instances", DRAWN_INSTANCE, block="DrawnInstances")
     _camera = StorageBuffer("camera of the first look", CAMERA_VIEW, 1, block="Camera")
 
     def __init__(
@@ -171,7 +175,11 @@ class FirstLook(BufferSet):
             return
         program = self._library.draw("viewport/first_look/instances.vert", "viewport/first_look/first_look.frag")
         order = np.argsort(instanced.which, kind="stable")
-        self._drawn_instances.upload(instanced.placements[order].astype(np.uint32))
+        records = DRAWN_INSTANCE.zeros(len(order))
+        for name in ("row0", "row1", "row2", "pivot"):
+            records[name] = instanced.entries[name][order]
+        records["material"], records["number"] = instanced.first_materials[order], instanced.placements[order]
+        self._drawn_instances.upload(records)
         counts = np.bincount(instanced.which, minlength=len(lengths))
         firsts = np.cumsum(counts) - counts
         for mesh, (length, count, first) in enumerate(zip(lengths.tolist(), counts.tolist(), firsts.tolist())):
@@ -180,7 +188,7 @@ class FirstLook(BufferSet):
                 "instance_vertices": 3 * length,
                 "first_vertex": 3 * int(instanced.mesh_first_triangles[mesh]),
             }
-            inputs = {**blocks, **self._geometry.placement_blocks, **self.blocks}
+            inputs = {**blocks, "DrawnInstances": self._drawn_instances.buffer}
             program.draw(framebuffer, 3 * length * count, inputs, {**parameters, **of_mesh}, state=state)
 
     def take(self, scene: Scene) -> Scene:
