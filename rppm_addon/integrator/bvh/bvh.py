@@ -16,8 +16,9 @@ from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
+from ..acceleration.instance_records import instance_records
 from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes
-from .bottom_levels import BottomLevels, instance_records, top_level_nodes
+from .bottom_levels import BottomLevels, top_level_nodes
 from .clustering import MAX_DEPTH, NODE
 from .leaves import LEAF, triangle_nodes
 
@@ -76,7 +77,7 @@ class Bvh(AccelerationStructure):
         if self._nodes.require_items(first + len(top)) or is_new:
             self._nodes.write(levels.nodes())
         self._nodes.write(top, first * NODE.size)
-        self._instances.upload(instance_records(instanced, levels.roots, reach))
+        self._instances.upload(instance_records(instanced, levels.roots[instanced.which], reach))
         state = TOP_LEVEL.zeros(1)
         state["root"], state["first_hit_triangle"] = first, instanced.first_hit_triangle
         state["hit_triangle_count"] = instanced.hit_triangle_count

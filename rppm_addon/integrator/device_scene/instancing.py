@@ -8,7 +8,7 @@ from ...materials.traits.node_rays import traces_rays
 from ...scene.materials import Material
 from ...scene.passes import DEEP_CUBEMAP, VECTOR
 from ...scene.scene import Scene
-from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
+from ...scene.settings import FirstCameraHits, Instancing
 
 MANY_TRIANGLES = 1 << 22
 """Triangles of an expanded scene from which on AUTOMATIC instancing has two levels, where a tenth of them stays."""
@@ -47,11 +47,9 @@ def instanced_members(scene: Scene, is_software: bool) -> np.ndarray | None:
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     """Whether all that looks at the triangles of a scene does so by rays and what they hit."""
     settings = scene.settings
-    structures = (AccelerationStructure.BVH, *((AccelerationStructure.AUTOMATIC,) if is_software else ()))
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_software else ()))
     return (
-        settings.acceleration_structure in structures
-        and settings.first_camera_hits in first_hits
+        settings.first_camera_hits in first_hits
         and scene.camera.texels is None
         and not {VECTOR, DEEP_CUBEMAP.name} & set(settings.passes)
         and not any(traces_rays(material.graph) for material in scene.materials)
