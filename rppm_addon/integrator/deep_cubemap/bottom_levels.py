@@ -14,8 +14,8 @@ MAX_LISTED = 32
 """Triangles of the largest mesh that is a list without cells."""
 _FEW_TRIANGLES = 2000
 """Triangles of meshes whose base level is coarse, as 1638 cells would be more than they are worth."""
-_STEP_EXPONENT = 4
-"""Log2 of the ratio of one margin of a mesh to the next."""
+_SHARED_EXPONENTS = 4
+"""Log2 of the ratio of the largest margin of instances that share a cubemap to the smallest."""
 _CELL_MARGINS = 16.0
 """Least size of cells, and of the core, in margins: rays of far instances are that inexact in object space."""
 _MAX_EXPONENT = 14
@@ -52,21 +52,29 @@ class MeshBounds:
         """Margin that covers the rounding of the mesh's own positions, meters."""
         return MARGIN * (self.radius + float(np.linalg.norm(self.center)))
 
-    def steps(self, margins: np.ndarray) -> np.ndarray:
-        """(n,) int64: which margin of the mesh instances need that have such margins, (n,) meters in object space.
+    def margin_exponents(self, margins: np.ndarray) -> np.ndarray:
+        """(n,) int64: log2 of the margin, in least margins, of the cubemap for each instance that needs such a margin,
+        (n,) meters in object space.
 
         Rays are the less exact in object space the farther away and the smaller an instance is. Cells are widened by
-        the margin, so instances of unlike sizes do not share them.
+        the margin, so instances share those of the largest margin as long as theirs is not much smaller.
         """
         with np.errstate(over="ignore"):
             ratios = np.clip(margins / self.least_margin, 1.0, 1e30)
-        return np.ceil(np.log2(ratios) / _STEP_EXPONENT - 1e-9).astype(np.int64)
+        exponents = np.ceil(np.log2(ratios) - 1e-9).astype(np.int64)
+        shared, left = np.zeros_like(exponents), np.ones(len(exponents), bool)
+        while left.any():
+            largest = exponents[left].max()
+            members = left & (exponents > largest - _SHARED_EXPONENTS)
+            shared[members] = largest
+            left &= ~members
+        return shared
 
 
-def mesh_parameters(mesh: Mesh, bounds: MeshBounds, step: int, first_triangle: int) -> np.void:
-    """Return the STATE that the build of a mesh's cubemap begins with. step: of its margin; first_triangle: of the mesh
-    in the block Triangles."""
-    margin = bounds.least_margin * 2.0 ** (_STEP_EXPONENT * step)
+def mesh_parameters(mesh: Mesh, bounds: MeshBounds, margin_exponent: int, first_triangle: int) -> np.void:
+    """Return the STATE that the build of a mesh's cubemap begins with. margin_exponent: as of margin_exponents;
+    first_triangle: of the mesh in the block Triangles."""
+    margin = bounds.least_margin * 2.0**margin_exponent
     exponent = int(np.clip(math.floor(math.log2(bounds.radius / (_CELL_MARGINS * margin))), 2, _MAX_EXPONENT))
     state = cubemap_parameters(bounds.center, bounds.radius + 4.0 * margin, exponent, mesh.triangle_count)
     state["margin"] = margin

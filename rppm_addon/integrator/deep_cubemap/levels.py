@@ -17,7 +17,7 @@ from .clusters import Clusters
 from .records import FIRST_MESH, STATE
 
 _Key = tuple[int, int, int, int, int]
-"""The ids of a mesh's arrays, the step of its margin, and the size of the largest clusters."""
+"""The ids of a mesh's arrays, the exponent of its margin, and the size of the largest clusters."""
 _INSTANCE_GAIN = 4
 """Instances that a cell of the top level has fewer, at least, where it is divided: each costs a ray more than a
 triangle does."""
@@ -70,12 +70,12 @@ class CubemapLevels(BufferSet):
         ends = np.cumsum(np.bincount(instanced.which, minlength=len(instanced.meshes)))
         for number, (mesh, own) in enumerate(zip(instanced.meshes, np.split(order, ends[:-1]), strict=True)):
             bounds = MeshBounds.of_mesh(mesh)
-            steps = bounds.steps(records["margin"][own])
-            for step in np.unique(steps).tolist():
+            exponents = bounds.margin_exponents(records["margin"][own])
+            for exponent in np.unique(exponents).tolist():
                 arrays = mesh.positions, mesh.corner_vertices, mesh.triangle_corners
-                key = (*(id(array) for array in arrays), step, clusters.max_size)
-                wanted.setdefault(key, (number, bounds, step))
-                records["root"][own[steps == step]] = FIRST_MESH + places.setdefault(key, len(places))
+                key = (*(id(array) for array in arrays), exponent, clusters.max_size)
+                wanted.setdefault(key, (number, bounds, exponent))
+                records["root"][own[exponents == exponent]] = FIRST_MESH + places.setdefault(key, len(places))
         self._records = records
         if list(wanted) != list(self._meshes):
             self._arrange(builder, instanced, clusters, wanted)
@@ -92,13 +92,13 @@ class CubemapLevels(BufferSet):
         """Put the cubemaps of the wanted meshes behind one another; those that are known are copied."""
         known, before = self._meshes, self.arrays
         self._meshes, self.arrays = {}, self.own(CubemapArrays(self._context, self._library))
-        for key, (number, bounds, step) in wanted.items():
+        for key, (number, bounds, exponent) in wanted.items():
             mesh = instanced.meshes[number]
             if key in known:
                 state = self.arrays.append(before, known[key][1])
             else:
                 first = int(instanced.mesh_first_triangles[number])
-                parameters = mesh_parameters(mesh, bounds, step, first)
+                parameters = mesh_parameters(mesh, bounds, exponent, first)
                 if mesh.triangle_count <= MAX_LISTED:
                     state = listed_mesh(parameters, bounds)
                 else:
