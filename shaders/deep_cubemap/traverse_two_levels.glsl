@@ -35,22 +35,24 @@ bool meets_mesh(DeepCubemapState mesh, vec3 origin, vec3 direction, float neares
     return meets_box(make_slab_test(origin, direction, 0.0), low, high, nearest, enter);
 }
 
-void test_instance(Ray ray, InstanceTest test, uint number, inout Hit best) {
+// latest: a distance behind which the ray is yet to come to the instance. Returns whether it has come to it.
+bool test_instance(Ray ray, InstanceTest test, uint number, float latest, inout Hit best) {
     BottomLevelInstance instance = bottom_level_instances[number];
-    if (!may_hit(test, instance)) return;
+    if (!may_hit(test, instance)) return true;
     DeepCubemapState mesh = deep_cubemaps[instance.root];
     mat3 linear = transpose(mat3(instance.to_object0.xyz, instance.to_object1.xyz, instance.to_object2.xyz));
     vec3 offset = vec3(instance.to_object0.w, instance.to_object1.w, instance.to_object2.w) - mesh.center;
     vec3 direction = linear * ray.direction;
-    if (!is_finite(direction) || dot(direction, direction) == 0.0) return;
+    if (!is_finite(direction) || dot(direction, direction) == 0.0) return true;
     float start;
-    if (!meets_mesh(mesh, linear * ray.origin + offset, direction, best.distance, start)) return;
+    if (!meets_mesh(mesh, linear * ray.origin + offset, direction, best.distance, start)) return true;
+    if (start > latest) return false;
     // The ray begins where it enters the mesh's box: from far away its places in cells would be less exact.
     start *= 0.9999;
     vec3 origin = linear * (ray.origin + start * ray.direction) + offset;
     CubemapWalk walk;
     CellItems items;
-    if (!begin_walk(mesh, origin, direction, 1.000001 * best.distance - start, walk)) return;
+    if (!begin_walk(mesh, origin, direction, 1.000001 * best.distance - start, walk)) return true;
     while (next_items(walk, best.distance - start, items)) {
         uint item;
         while (next_item(walk, items, best.distance - start, item)) {
@@ -59,10 +61,11 @@ void test_instance(Ray ray, InstanceTest test, uint number, inout Hit best) {
             for (uint triangle = first; triangle < end; ++triangle) {
                 test_instance_triangle(test, instance, uvec2(number, triangle), best);
             }
-            if (test.triangles.any_hit && best.triangle != NO_TRIANGLE) return;
+            if (test.triangles.any_hit && best.triangle != NO_TRIANGLE) return true;
         }
-        if (best.distance - start <= items.exit) return;
+        if (best.distance - start <= items.exit) return true;
     }
+    return true;
 }
 
 void test_cluster(RayTest test, uint item, bool is_core, inout Hit best) {
@@ -84,13 +87,14 @@ Hit trace_ray(Ray ray, bool any_hit) {
         CellItems items;
         if (!begin_walk(cubemap, ray.origin - cubemap.center, ray.direction, best.distance, walk)) continue;
         while (next_items(walk, best.distance, items)) {
+            // A box that the ray enters behind this cell is listed in another one; with some slack for rounding.
+            float latest = items.is_core ? INFINITY_DISTANCE : 1.00001 * items.exit + 16.0 * cubemap.margin;
             uint item;
             while (next_item(walk, items, best.distance, item)) {
                 if (level == WORLD_LEVEL) {
                     test_cluster(test.triangles, item, items.is_core, best);
                 } else if (!has_visited(visited, item)) {
-                    visit(visited, item);
-                    test_instance(ray, test, item, best);
+                    if (test_instance(ray, test, item, latest, best)) visit(visited, item);
                 }
                 if (any_hit && best.triangle != NO_TRIANGLE) return best;
             }
