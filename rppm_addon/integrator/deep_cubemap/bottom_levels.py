@@ -10,7 +10,7 @@ from ...scene.meshes import Mesh
 from ..acceleration.acceleration_structure import MARGIN
 from .parameters import CORE_MARGINS, cubemap_parameters
 
-MAX_LISTED = 32
+MAX_LISTED = 8
 """Triangles of the largest mesh that is a list without cells."""
 _FEW_TRIANGLES = 2000
 """Triangles of meshes whose base level is coarse, as 1638 cells would be more than they are worth."""
