@@ -13,6 +13,7 @@ from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.programs.program import Bindable
 from ...scene.meshes import Mesh
+from ...scene.storage.sharing import same_members
 from ..common.active_paths import ActivePaths
 
 TOP_LEVEL = Record("TopLevel", root="uint", first_hit_triangle="uint", hit_triangle_count="uint")
@@ -59,6 +60,31 @@ class HitPaths(enum.Enum):
     SUBSURFACE = "subsurface"
 
 
+class WorldPlacements:
+    """All that world triangles and their attributes are made of: equal to others of which the same ones are made."""
+
+    def __init__(self, meshes: list[Mesh], *places: np.ndarray) -> None:
+        """meshes: of each expanded instance; places: arrays by which these are placed."""
+        self._arrays = [array for mesh in meshes for array in _arrays_of(mesh)]
+        self._places = [array.tobytes() for array in places]
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, WorldPlacements)
+            and same_members(self._arrays, other._arrays)
+            and self._places == other._places
+        )
+
+    __hash__ = None  # type: ignore[assignment]  # compared only
+
+
+def _arrays_of(mesh: Mesh) -> tuple[np.ndarray | None, ...]:
+    return (
+        mesh.positions, mesh.corner_vertices, mesh.triangle_corners, mesh.corner_normals, mesh.corner_uv,
+        mesh.triangle_slots,
+    )  # fmt: skip
+
+
 @dataclass(frozen=True)
 class InstancedMeshes:
     """Instances of a scene that are not expanded to world triangles, and their meshes."""
@@ -78,6 +104,7 @@ class InstancedMeshes:
     """(n,) records with row0, row1, row2, pivot and set_code, as the triangles of expanded instances are placed by."""
     boxes: np.ndarray
     """(n, 2, 3) float64, low and high corners in the world, meters."""
+    world: WorldPlacements
     first_hit_triangle: int
     hit_triangle_count: int
     hit_origins: moderngl.Buffer

@@ -17,8 +17,8 @@ from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
 from ..acceleration.instance_records import instance_records
-from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes
-from .bottom_levels import BottomLevels, top_level_nodes
+from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, WorldPlacements
+from .bottom_levels import BottomLevels, moved_nodes, top_level_nodes
 from .clustering import MAX_DEPTH, NODE
 from .leaves import LEAF, triangle_nodes
 
@@ -42,6 +42,11 @@ class Bvh(AccelerationStructure):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._bottom_levels = BottomLevels()
+        self._world_nodes = NODE.zeros(0)
+        """Hierarchy of the world triangles beside instances."""
+        self._world: WorldPlacements | None = None
+        """What the world triangles are that it was built for."""
+        self._world_margin = 0.0
 
     def build(
         self,
@@ -55,31 +60,36 @@ class Bvh(AccelerationStructure):
     ) -> None:
         """AccelerationStructure.build. Hierarchies of meshes that have not changed stay."""
         self._has_one_sided, self._instanced = has_one_sided, instanced
-        read = triangles.read(_TRIANGLE_BYTES * triangle_count) if triangle_count else b""
-        vertices = np.frombuffer(read, np.float32).reshape(-1, 3, 4)[..., :3]
         margin = max(float(scene_radius), 1e-20) * MARGIN
         if instanced is None:
-            self._bottom_levels = BottomLevels()
-            nodes = triangle_nodes(vertices, margin)
+            self._bottom_levels, self._world_nodes, self._world = BottomLevels(), NODE.zeros(0), None
+            nodes = triangle_nodes(_read_vertices(triangles, triangle_count), margin)
             self._nodes.require_items(len(nodes))
             self._nodes.write(nodes)
             self._traversal_buffers = {"Triangles": triangles, "BvhNodes": self._nodes.buffer}
             return
+        is_new = self._bottom_levels.build(instanced.meshes)
+        # A hierarchy whose margin is half of the wanted one still leaves fifteen times the rounding error.
+        if instanced.world != self._world or margin > 2.0 * self._world_margin:
+            self._world_nodes = triangle_nodes(_read_vertices(triangles, triangle_count), margin)
+            self._world, self._world_margin, is_new = instanced.world, margin, True
         reach = float(scene_radius) + float(np.linalg.norm(np.fromiter(center, np.float64)))
-        self._build_levels(vertices, margin, reach, instanced)
+        self._write_levels(instanced, margin, reach, is_new)
         self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hit_origins, **self.blocks}
 
-    def _build_levels(self, vertices: np.ndarray, margin: float, reach: float, instanced: InstancedMeshes) -> None:
+    def _write_levels(self, instanced: InstancedMeshes, margin: float, reach: float, is_new: bool) -> None:
+        """Write the top level, and where those are new the hierarchies of the meshes and of the world triangles."""
         levels = self._bottom_levels
-        is_new = levels.build(instanced.meshes)
-        first = levels.node_count
-        top = top_level_nodes(vertices, margin, instanced, first)
-        if self._nodes.require_items(first + len(top)) or is_new:
+        first_world = levels.node_count
+        first_top = first_world + len(self._world_nodes)
+        top = top_level_nodes(self._world_nodes, first_world, margin, instanced)
+        if self._nodes.require_items(first_top + len(top)) or is_new:
             self._nodes.write(levels.nodes())
-        self._nodes.write(top, first * NODE.size)
+            self._nodes.write(moved_nodes(self._world_nodes, first_world), first_world * NODE.size)
+        self._nodes.write(top, first_top * NODE.size)
         self._instances.upload(instance_records(instanced, levels.roots[instanced.which], reach))
         state = TOP_LEVEL.zeros(1)
-        state["root"], state["first_hit_triangle"] = first, instanced.first_hit_triangle
+        state["root"], state["first_hit_triangle"] = first_top, instanced.first_hit_triangle
         state["hit_triangle_count"] = instanced.hit_triangle_count
         self._top_level.upload(state)
 
@@ -89,3 +99,9 @@ class Bvh(AccelerationStructure):
         if self._instanced is None:
             return super().traversal_defines
         return {**super().traversal_defines, "TRAVERSAL": "bvh/traverse_two_levels.glsl"}
+
+
+def _read_vertices(triangles: moderngl.Buffer, count: int) -> np.ndarray:
+    """(count, 3, 3) float32 vertices of triangles, meters."""
+    read = triangles.read(_TRIANGLE_BYTES * count) if count else b""
+    return np.frombuffer(read, np.float32).reshape(-1, 3, 4)[..., :3]

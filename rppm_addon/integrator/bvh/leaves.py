@@ -7,7 +7,7 @@ from .clustering import NODE, build_nodes
 
 LEAF = 0x80000000
 """Bit of a child that is a leaf: a number from bit 2 on, and below that the number of triangles from there on."""
-_EMPTY_LEAF = np.uint32(LEAF)
+EMPTY_LEAF = np.uint32(LEAF)
 
 Boxes = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Low and high corners, (3, n) float32 in meters each, and what stands for each box in its node, (n,) uint32."""
@@ -18,24 +18,17 @@ def triangle_nodes(vertices: np.ndarray, margin: float) -> np.ndarray:
 
     margin: how far boxes are widened, meters. Triangles with infinite or NaN coordinates are left out.
     """
-    return _nodes(_leaves(vertices), margin)
+    return box_nodes(_leaves(vertices), margin)
 
 
-def box_nodes(vertices: np.ndarray, margin: float, others: Boxes) -> np.ndarray:
-    """NODE records of a hierarchy of triangles, as triangle_nodes returns them, and of other boxes."""
-    parts = zip(_leaves(vertices), others, strict=True)
-    low, high, leaves = (np.concatenate(columns, axis=-1) for columns in parts)
-    return _nodes((low, high, leaves), margin)
-
-
-def _nodes(boxes: Boxes, margin: float) -> np.ndarray:
+def box_nodes(boxes: Boxes, margin: float) -> np.ndarray:
+    """NODE records of a hierarchy of boxes, the root first. margin: as that of triangle_nodes."""
     low, high, leaves = boxes
-    low -= np.float32(margin)
-    high += np.float32(margin)
+    low, high = low - np.float32(margin), high + np.float32(margin)
     if len(leaves) > 1:
         return build_nodes(low, high, leaves)
     root = NODE.zeros(1)
-    root["child0"] = root["child1"] = _EMPTY_LEAF
+    root["child0"] = root["child1"] = EMPTY_LEAF
     if len(leaves):
         root["low0"], root["high0"], root["child0"] = low[:, 0], high[:, 0], leaves
     return root

@@ -23,6 +23,10 @@ class CubemapSource(Protocol):
     core: GrowingBuffer
 
 
+_NO_ITEMS = 0, 0, MAX_LISTED
+"""Ends of the arrays without any cubemap."""
+
+
 class CubemapArrays(BufferSet):
     """Cells, entries, and depth bins and core lists. Lists begin with the numbers from 0 on, the core list of each mesh
     that has no cells."""
@@ -35,9 +39,12 @@ class CubemapArrays(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._context = context
-        self._ends = [0, 0, MAX_LISTED]
+        self._ends = list(_NO_ITEMS)
+
+    @property
+    def ends(self) -> tuple[int, ...]:
         """Items in use, of cells, entries and lists."""
-        self._kept = list(self._ends)
+        return tuple(self._ends)
 
     @property
     def bins(self) -> GrowingBuffer:
@@ -49,18 +56,14 @@ class CubemapArrays(BufferSet):
         """Core lists, which are among the lists."""
         return self.lists
 
-    def keep(self) -> None:
-        """Keep what is there now when the rest is dropped, and have the numbers that lists begin with."""
-        self.lists.extend_items(MAX_LISTED)
-        self.lists.write(np.arange(MAX_LISTED, dtype=np.uint32))
-        self._kept = list(self._ends)
-
-    def drop(self) -> None:
-        """Drop what was appended since the arrays were told to keep what they had."""
-        self._ends = list(self._kept)
+    def cut(self, ends: tuple[int, ...] | None) -> None:
+        """Drop what lies behind such ends; all where there are none."""
+        self._ends = list(ends or _NO_ITEMS)
 
     def append(self, source: CubemapSource, state: np.void) -> np.void:
         """Copy a cubemap behind the others; returns its STATE, which names the places. Raises DeviceError."""
+        if not self.lists.size:
+            self.lists.upload(np.arange(MAX_LISTED, dtype=np.uint32))
         placed = state.copy()
         if not state["root_count"]:
             return placed  # a list

@@ -72,8 +72,8 @@ class MeshBounds:
 
 
 def mesh_parameters(mesh: Mesh, bounds: MeshBounds, margin_exponent: int, first_triangle: int) -> np.void:
-    """Return the STATE that the build of a mesh's cubemap begins with. margin_exponent: as of margin_exponents;
-    first_triangle: of the mesh in the block Triangles."""
+    """Return the STATE that the build of a mesh's cubemap begins with; that of a list, without roots, for the smallest
+    meshes. margin_exponent: as of margin_exponents; first_triangle: of the mesh in the block Triangles."""
     margin = bounds.least_margin * 2.0**margin_exponent
     exponent = int(np.clip(math.floor(math.log2(bounds.radius / (_CELL_MARGINS * margin))), 2, _MAX_EXPONENT))
     state = cubemap_parameters(bounds.center, bounds.radius + 4.0 * margin, exponent, mesh.triangle_count)
@@ -82,18 +82,18 @@ def mesh_parameters(mesh: Mesh, bounds: MeshBounds, margin_exponent: int, first_
     state["first_triangle"] = first_triangle
     if mesh.triangle_count < _FEW_TRIANGLES:
         state["base_level"] = 1
+    if mesh.triangle_count <= MAX_LISTED:
+        _make_list(state, bounds)
     return state
 
 
-def listed_mesh(parameters: np.void, bounds: MeshBounds) -> np.void:
-    """Return the STATE of a mesh that is a list without cells: all of it is core, the triangles in their order."""
-    state = parameters.copy()
+def _make_list(state: np.void, bounds: MeshBounds) -> None:
+    """Have all triangles of a mesh in the core, in their order."""
     state["core_radius"] = 1e6 * state["scene_radius"]
     state["core_count"] = state["triangle_count"]
     state["root_count"] = 0
     state["low_complement"] = ~sortable_bits(bounds.low.astype(np.float32) - np.float32(bounds.center))
     state["high"] = sortable_bits(bounds.high.astype(np.float32) - np.float32(bounds.center))
-    return state
 
 
 def sortable_bits(values: np.ndarray) -> np.ndarray:

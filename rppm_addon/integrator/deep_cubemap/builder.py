@@ -22,10 +22,7 @@ _MIN_TRIAL_TRIANGLES, _MAX_TRIAL_TRIANGLES = 1000, 16384
 
 
 class CubemapBuilder(BufferSet):
-    """The buffers of builds, which hold what the last one made, and how triangles are found in cells.
-
-    ``resolution``: cells along a face's side where they are finest, of the last build.
-    """
+    """The buffers of builds, which hold what the last one made, and how triangles are found in cells."""
 
     remedy = BuildBuffers.remedy
     buffers = Part(BuildBuffers)
@@ -36,7 +33,6 @@ class CubemapBuilder(BufferSet):
         self._context = context
         self._overlap = self.own(OverlapTest(context, library, rasterize))
         self._level_limit = LevelLimit()
-        self.resolution = 0
 
     def build(self, parameters: np.void, clusters: Clusters) -> np.void:
         """Sort what ``parameters``, a STATE, count into cells; returns the STATE of the cubemap, with the fragments of
@@ -83,7 +79,6 @@ class CubemapBuilder(BufferSet):
             self._overlap.find_fragments(buffers, level, clusters)
         sort_into_bins(buffers, level)
         hierarchy.merge(level)
-        self.resolution = level.resolution
         return hierarchy.fragment_count
 
     def _is_faster_rasterized(self, parameters: np.void, clusters: Clusters) -> bool:

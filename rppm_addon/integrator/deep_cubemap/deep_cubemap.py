@@ -112,27 +112,24 @@ class DeepCubemap(AccelerationStructure):
         size = self._max_cluster_size
         listed = triangle_count + (instanced.triangle_count if instanced is not None else 0)
         self._clusters = Clusters(size) if size else Clusters.of_scene(listed)
-        if instanced is not None:
+        if instanced is None:
+            self._levels.clear()
+            state = self._builder.build(parameters, self._clusters)
+        else:
             reach = float(scene_radius) + float(np.linalg.norm(self.center))
-            self._levels.build_meshes(self._builder, instanced, self._clusters, reach)
-        state = self._builder.build(parameters, self._clusters)
-        self.resolution = self._builder.resolution
+            state = self._levels.build(self._builder, instanced, parameters, self._clusters, reach)
+        self.resolution = 1 << int(state["root_exponent"] + 2 * state["last_level"])
         self.counts = {
             name: int(state[f"{name}_count"])
             for name in ("triangle", "fragment", "tile", "entry", "binned_fragment", "bin", "core")
         }
         log.debug("deep cubemap: %s", self.counts)
         if instanced is None:
-            self._levels.clear()
             blocks = buffers.blocks
             self._traversal_buffers = {name: blocks[name] for name in _TRAVERSAL_BLOCKS}
         else:
-            self._levels.build_top(self._builder, instanced, state, parameters)
-            self._traversal_buffers = {
-                "Triangles": triangles,
-                "HitOrigins": instanced.hit_origins,
-                **self._levels.traversal_blocks,
-            }
+            levels = self._levels.traversal_blocks
+            self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hit_origins, **levels}
 
     @property
     def traversal_defines(self) -> dict[str, object]:

@@ -26,7 +26,7 @@ from ..surfaces.resolve import Resolve
 from .acceleration import Acceleration
 from .centering import Centering
 from .changes import Changes, changes_between, snapshot
-from .instancing import instanced_members
+from .instancing import MovedInstances, instanced_members
 from .iteration_parameters import IterationBlock
 from .shutter import SceneMotion
 from .stage_context import StageContext
@@ -54,6 +54,7 @@ class DeviceScene:
         self._warnings: dict[str, list[str]] = {"device": context.information.warnings}
         """Warnings by part, collected when the part was built. They hold for later scenes as well."""
         self._motion = SceneMotion()
+        self._moved = MovedInstances()
         self._checked_bodies: dict[int, tuple[Mesh, bool]] = {}
 
     @property
@@ -172,7 +173,7 @@ class DeviceScene:
                 self.materials.default_material,
                 self._motion.swept,
                 self.materials.media.places.slots,
-                instanced_members(scene, self._context.is_software),
+                self._instanced_members(),
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
@@ -197,6 +198,11 @@ class DeviceScene:
                 )
         elif not keep_learned:
             self.lights.begin(photons)
+
+    def _instanced_members(self) -> np.ndarray | None:
+        """Instances that are not expanded, the same ones at all moments of an open shutter."""
+        scene = self._motion.scene
+        return instanced_members(scene, self._moved.follow(scene), self._context.is_software)
 
     def _bake_media(self, scene: Scene) -> None:
         geometry = self.geometry

@@ -20,7 +20,7 @@ from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..acceleration.instances import HitPaths, InstancedMeshes
+from ..acceleration.instances import HitPaths, InstancedMeshes, WorldPlacements
 from ..common.active_paths import ActivePaths
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes
@@ -151,6 +151,8 @@ class Geometry(BufferSet):
         """Instances that are not expanded, which rays place in the world; None where there are none."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
+        self._world: WorldPlacements | None = None
+        """What the world triangles are made of."""
         self.triangle_count = 0
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
@@ -196,11 +198,13 @@ class Geometry(BufferSet):
         chosen = [index for index, instance in enumerate(scene.instances) if instance.mesh in places]
         instances = [scene.instances[index] for index in chosen]
         which = np.array([places[instance.mesh] for instance in instances], np.int64)
-        is_expanded = np.ones(len(chosen), bool) if is_instanced is None else ~is_instanced[chosen]
+        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
+        is_expanded = np.ones(len(chosen), bool)
+        if is_instanced is not None:  # rays go on in object space, which flat ones do not have
+            is_expanded = ~(is_instanced[chosen] & affine_inverses(self.matrices).any(axis=(1, 2)))
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which] * is_expanded
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
-        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
         entries = INSTANCE_ENTRY.zeros(len(instances))
         entries["first_triangle"] = ends - lengths
         slot_materials: list[int] = []
@@ -228,13 +232,20 @@ class Geometry(BufferSet):
         self._enclose(boxes[which], swept)
         self._inputs.upload_meshes(meshes)
         self._inputs.instances.upload(entries)
-        self._inputs.slot_materials.upload(np.array(slot_materials or [default_material], np.uint32))
+        slots_uploaded = np.array(slot_materials or [default_material], np.uint32)
+        self._inputs.slot_materials.upload(slots_uploaded)
+        expanded = np.flatnonzero(is_expanded)
+        placed_meshes = [meshes[index] for index in which[expanded].tolist()]
+        # As bytes: copies of records leave the padding between members undefined.
+        placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
+        before, self._world = self._world, WorldPlacements(placed_meshes, expanded, placed_by, slots_uploaded)
         self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries)
-        self._require_triangles(instances, lengths)
-        self._gather_triangles(len(instances))
+        if self._require_triangles(instances, lengths) or before != self._world:
+            self._gather_triangles(len(instances))
+        self._objects.gather(self._inputs.blocks, self.triangles)
 
     def _gather_triangles(self, instance_count: int) -> None:
-        """Gather the triangles of all that is expanded, and of the meshes of what is not."""
+        """Gather the triangles of all that is expanded."""
         inputs = self._inputs.blocks
         for triangles, attributes in zip(
             self.triangles.ranges(self.triangle_count), self.attributes.ranges(self.triangle_count), strict=True
@@ -249,7 +260,6 @@ class Geometry(BufferSet):
                     "instance_count": instance_count,
                 },
             )
-        self._objects.gather(inputs, self.triangles)
 
     def _place_instanced(
         self, scene: Scene, meshes: list[Mesh], which: np.ndarray, placements: np.ndarray, entries: np.ndarray
@@ -273,6 +283,7 @@ class Geometry(BufferSet):
             affine_inverses(self.matrices[placements]),
             entries[placements],
             self.boxes[placements],
+            self._world,
             self._hits.first,
             self._hits.count,
             self._hits.origins.buffer,
@@ -286,12 +297,12 @@ class Geometry(BufferSet):
         outputs = self.triangles, self.attributes
         self._hits.gather(hits, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
 
-    def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> None:
-        """Have room for the triangles of instances, which have so many each (n,). Raises DeviceError, which says whose
-        they are."""
+    def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> bool:
+        """Have room for the triangles of instances, which have so many each (n,); returns whether the buffers are new.
+        Raises DeviceError, which says whose they are."""
         try:
-            self.triangles.require_items(max(self.triangle_count, self._objects.first + self._objects.count))
-            self.attributes.require_items(max(self.triangle_count, self._hits.first + self._hits.count))
+            is_new = self.triangles.require_items(max(self.triangle_count, self._objects.first + self._objects.count))
+            is_new |= self.attributes.require_items(max(self.triangle_count, self._hits.first + self._hits.count))
         except DeviceLostError:
             raise
         except DeviceError as error:
@@ -301,6 +312,7 @@ class Geometry(BufferSet):
             raise DeviceError(
                 f"{error} (of {self.triangle_count:,} triangles, instances counted each: {most}{held})"
             ) from error
+        return is_new
 
     def _bounds_of(self, meshes: list[Mesh]) -> list[tuple[np.ndarray, np.ndarray] | None]:
         """Finite bounds of each mesh, found once for each array of positions."""
