@@ -82,7 +82,8 @@ def _may_be_instanced(scene: Scene, meshes: np.ndarray) -> np.ndarray:
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     """Whether all that looks at the triangles of a scene does so by rays and what they hit."""
     settings = scene.settings
-    first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_software else ()))
+    is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
+    first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
     return (
         settings.first_camera_hits in first_hits
         and scene.camera.texels is None
