@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Instances whose triangles are placed in the world by the rays that meet them.
 //
-// A hit on such an instance gets the number of a hit triangle, behind those of the world triangles. HitOrigins says which
-// triangle of which instance that is. Each path has two such numbers, so that the triangle that its ray comes from keeps
-// its own; a kernel that only looks at hits itself need not give its paths numbers, and has two that no other kernel sees.
+// A hit on such an instance gets the number of a hit triangle, behind those of the world triangles. HitOrigins says
+// which triangle of which instance that is. Each path has two such numbers, so that the triangle that its ray comes
+// from keeps its own. A kernel that only looks at hits itself need not give its paths numbers: it has two that no other
+// kernel sees.
 #include "acceleration/triangles.glsl"
 #include "common/constants.glsl"
 #include "common/placed_point.glsl"

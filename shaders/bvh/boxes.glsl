@@ -16,7 +16,8 @@ SlabTest make_slab_test(vec3 origin, vec3 direction, float margin) {
 // Where a ray enters a box, and whether it meets the box before a distance. Both ends give way by more than the
 // rounding errors of the quotients, so that no box is missed whose triangle is hit.
 bool meets_box(SlabTest slabs, vec3 low, vec3 high, float distance, out float enter) {
-    vec3 a = (low - slabs.low_origin) * slabs.inverse_direction, b = (high - slabs.high_origin) * slabs.inverse_direction;
+    vec3 a = (low - slabs.low_origin) * slabs.inverse_direction,
+         b = (high - slabs.high_origin) * slabs.inverse_direction;
     vec3 near = min(a, b), far = max(a, b);
     enter = max(max(near.x, near.y), max(near.z, 0.0));
     float leave = min(min(far.x, far.y), min(far.z, distance));

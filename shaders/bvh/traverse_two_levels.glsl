@@ -2,8 +2,8 @@
 // Tracing rays through two levels of bounding volume hierarchies (rppm_addon/integrator/bvh): a leaf of the top level
 // holds world triangles, or an instance, whose mesh has a hierarchy of its own in object space.
 //
-// In a mesh's hierarchy the ray goes on in object space, where its direction keeps its scale: distances are those of the
-// world. Its triangles are tested in the world, so that hits are the same as those of triangles that lie there.
+// In a mesh's hierarchy the ray goes on in object space, where its direction keeps its scale: distances are those of
+// the world. Its triangles are tested in the world, so that hits are the same as those of triangles that lie there.
 #include "acceleration/instance_test.glsl"
 #include "bvh/boxes.glsl"
 #include "common/finite.glsl"
@@ -14,7 +14,7 @@ restrict readonly buffer BvhNodes;
 
 // Stands on the stack below what is left of a mesh's hierarchy.
 const uint TO_TOP_LEVEL = 0xffffffffu;
-const uint NO_INSTANCE_LEFT = 0xffffffffu;
+const uint IN_WORLD = 0xffffffffu;  // in place of the number of an instance
 
 SlabTest object_slab_test(Ray ray, BottomLevelInstance instance) {
     mat3 linear = transpose(mat3(instance.to_object0.xyz, instance.to_object1.xyz, instance.to_object2.xyz));
@@ -32,14 +32,14 @@ Hit trace_ray(Ray ray, bool any_hit) {
     SlabTest world_slabs = make_slab_test(ray.origin, ray.direction, 0.0), slabs = world_slabs;
     uint stack[2 * MAX_DEPTH + 1];
     int top = 0;
-    uint child = top_level.root, number = NO_INSTANCE_LEFT;
+    uint child = top_level.root, number = IN_WORLD;
     BottomLevelInstance instance;
     // Never reached: a ray meets a few hundred nodes.
     for (int count = 0; count < 60000; ++count) {
         bool is_at_end = true;
         if (child == TO_TOP_LEVEL) {
             slabs = world_slabs;
-            number = NO_INSTANCE_LEFT;
+            number = IN_WORLD;
         } else if ((child & LEAF) == 0u) {
             BvhNode node = bvh_nodes[child];
             float enter0, enter1;
@@ -49,12 +49,12 @@ Hit trace_ray(Ray ray, bool any_hit) {
             child = is_second_first ? node.child1 : node.child0;
             if (meets0 && meets1) stack[top++] = is_second_first ? node.child0 : node.child1;
             is_at_end = !(meets0 || meets1);
-        } else if (number == NO_INSTANCE_LEFT && (child & 3u) == INSTANCE_LEAF) {
+        } else if (number == IN_WORLD && (child & 3u) == INSTANCE_LEAF) {
             number = (child & ~LEAF) >> 2;
             instance = bottom_level_instances[number];
             is_at_end = !may_hit(test, instance);
             if (is_at_end) {
-                number = NO_INSTANCE_LEFT;
+                number = IN_WORLD;
             } else {
                 stack[top++] = TO_TOP_LEVEL;
                 slabs = object_slab_test(ray, instance);
@@ -63,7 +63,7 @@ Hit trace_ray(Ray ray, bool any_hit) {
         } else {
             uint first = (child & ~LEAF) >> 2, end = first + (child & 3u);
             for (uint triangle = first; triangle < end; ++triangle) {
-                if (number == NO_INSTANCE_LEFT) test_triangle(test.triangles, triangle, best);
+                if (number == IN_WORLD) test_triangle(test.triangles, triangle, best);
                 else test_instance_triangle(test, instance, uvec2(number, triangle), best);
             }
             if (any_hit && best.triangle != NO_TRIANGLE) break;

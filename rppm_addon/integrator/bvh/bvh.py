@@ -45,7 +45,7 @@ class Bvh(AccelerationStructure):
         self._world_nodes = NODE.zeros(0)
         """Hierarchy of the world triangles beside instances."""
         self._world: WorldPlacements | None = None
-        """What the world triangles are that it was built for."""
+        """World triangles that this was built for."""
         self._world_margin = 0.0
 
     def build(

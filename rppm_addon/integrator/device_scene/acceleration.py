@@ -15,6 +15,7 @@ from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..surfaces.geometry import Geometry
 from .changes import Changes
+from .instancing import MovedInstances, instanced_members
 
 _MAX_CORE_TRIANGLES = 64
 
@@ -28,6 +29,7 @@ class Acceleration:
         self.center = np.full(3, np.nan)
         """Center of the deep cubemap, and of the cubemaps that photons are splatted into, (3,) meters."""
         self._wanted_center = self.center
+        self._moved = MovedInstances()
 
     @property
     def structure(self) -> AccelerationStructure:
@@ -47,6 +49,11 @@ class Acceleration:
         if asked is not Kind.AUTOMATIC:
             return asked
         return Kind.BVH if self._context.is_software else Kind.DEEP_CUBEMAP
+
+    def instanced_members(self, scene: Scene) -> np.ndarray | None:
+        """(instances,) bool, the instances of a scene that are not expanded to world triangles; None for none. A scene
+        with a shutter has the same ones at all of its moments."""
+        return instanced_members(scene, self._moved.follow(scene), self._context.is_software)
 
     def update(self, scene: Scene, geometry: Geometry, changes: Changes, center_tolerance: float = np.inf) -> None:
         """Build the structure where what it rests on has changed, or where it is not what the scene asks for.

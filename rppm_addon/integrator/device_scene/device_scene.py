@@ -26,7 +26,6 @@ from ..surfaces.resolve import Resolve
 from .acceleration import Acceleration
 from .centering import Centering
 from .changes import Changes, changes_between, snapshot
-from .instancing import MovedInstances, instanced_members
 from .iteration_parameters import IterationBlock
 from .shutter import SceneMotion
 from .stage_context import StageContext
@@ -37,7 +36,6 @@ class DeviceScene:
 
     def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
         self._timers = timers
-        self._context = context
         self._pacing = library.pacing
         self.geometry = Geometry(context, library)
         self.materials = MaterialTables(context, library)
@@ -54,7 +52,6 @@ class DeviceScene:
         self._warnings: dict[str, list[str]] = {"device": context.information.warnings}
         """Warnings by part, collected when the part was built. They hold for later scenes as well."""
         self._motion = SceneMotion()
-        self._moved = MovedInstances()
         self._checked_bodies: dict[int, tuple[Mesh, bool]] = {}
 
     @property
@@ -173,7 +170,7 @@ class DeviceScene:
                 self.materials.default_material,
                 self._motion.swept,
                 self.materials.media.places.slots,
-                self._instanced_members(),
+                self.acceleration.instanced_members(self._motion.scene),
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
@@ -198,11 +195,6 @@ class DeviceScene:
                 )
         elif not keep_learned:
             self.lights.begin(photons)
-
-    def _instanced_members(self) -> np.ndarray | None:
-        """Instances that are not expanded, the same ones at all moments of an open shutter."""
-        scene = self._motion.scene
-        return instanced_members(scene, self._moved.follow(scene), self._context.is_software)
 
     def _bake_media(self, scene: Scene) -> None:
         geometry = self.geometry

@@ -23,6 +23,7 @@ from ...scene.scene import Scene
 from ..acceleration.instances import HitPaths, InstancedMeshes, WorldPlacements
 from ..common.active_paths import ActivePaths
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
+from ..common.require import require
 from ..common.stage_sizes import StageSizes
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
 from .hit_triangles import HitTriangles
@@ -152,13 +153,18 @@ class Geometry(BufferSet):
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
         self._world: WorldPlacements | None = None
-        """What the world triangles are made of."""
+        """Sources of the world triangles."""
         self.triangle_count = 0
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
         self.placements: list[Placement] = []
         self.matrices, self.boxes = np.zeros((0, 4, 4)), np.zeros((0, 2, 3))
         self.bounds_low = self.bounds_high = np.zeros(3)
+
+    @property
+    def placement_blocks(self) -> dict[str, Bindable]:
+        """Blocks of the instances and the materials of their slots."""
+        return {name: self._inputs.blocks[name] for name in ("Instances", "SlotMaterials")}
 
     @property
     def center(self) -> np.ndarray:
@@ -283,7 +289,7 @@ class Geometry(BufferSet):
             affine_inverses(self.matrices[placements]),
             entries[placements],
             self.boxes[placements],
-            self._world,
+            require(self._world),
             self._hits.first,
             self._hits.count,
             self._hits.origins.buffer,

@@ -47,7 +47,9 @@ class HitTriangles(BufferSet):
     def place(self, first: int, sizes: StageSizes | None) -> None:
         """Have places for the paths of a scene of these sizes from a triangle on; for none without sizes."""
         self.first, self.count, self.first_hits = first, 0, {}
-        for paths, size in _PATHS.items() if sizes is not None else ():
+        if sizes is None:
+            return
+        for paths, size in _PATHS.items():
             self.first_hits[paths] = self.count
             self._counts[paths] = -(-2 * size(sizes) // RANGE_ITEMS) * RANGE_ITEMS
             self.count += self._counts[paths]
@@ -62,9 +64,11 @@ class HitTriangles(BufferSet):
         outputs: tuple[GrowingBuffer, GrowingBuffer],
         fallback_point: np.ndarray,
     ) -> None:
-        """Write the triangles of the hits (HIT) of active paths of a list. ``blocks``: the inputs of gathering, and those of the
-        acceleration structure; ``outputs``: world triangles and their attributes; ``fallback_point``: of triangles that
-        are not finite, (3,) meters."""
+        """Write the triangles of the hits (HIT) of active paths of a list.
+
+        ``blocks``: the inputs of gathering, and those of the acceleration structure; ``outputs``: world triangles and
+        their attributes; ``fallback_point``: of triangles that are not finite, (3,) meters.
+        """
         first, count = self.first_hits[paths], self._counts[paths]
         ((triangles,), (attributes,)) = (buffer.ranges(count, self.first + first) for buffer in outputs)
         buffers = {**blocks, **self.blocks, "Hits": hits, "Triangles": triangles, "Attributes": attributes}

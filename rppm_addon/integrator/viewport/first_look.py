@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Picture of a scene before its programs are compiled: plain surfaces under a light at the viewer's head."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import moderngl
 import numpy as np
@@ -11,6 +11,7 @@ from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
+from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...materials.placeholders.plain_surface import PlainSurface, plain_surface
 from ...materials.tables import default_material
@@ -28,13 +29,28 @@ PLAIN_SURFACE = Record(
 StorageBlock("PlainSurfaces", "PlainSurface plain_surfaces[];")
 StorageBlock("InstanceOpacities", "float instance_opacities[];")
 """Below 0 of what the camera does not see, 0 of a holdout."""
-Record("FirstLookParameters", sky="vec3", headlight="float", exposure="float", drawn="uint")
+StorageBlock("DrawnInstances", "uint drawn_instances[];")
+"""Numbers of the instances that are not expanded, mesh by mesh."""
+Record(
+    "FirstLookParameters",
+    sky="vec3",
+    headlight="float",
+    exposure="float",
+    drawn="uint",
+    first_instance="uint",
+    instance_vertices="uint",
+    first_vertex="uint",
+)
+"""The last three are of instances that are not expanded: the first drawn one of a mesh, and the number and the first of
+the vertices of the mesh."""
 _SOLID, _TRANSPARENT = 1, 2
 Constants("FirstLookDrawn", DRAWN_SOLID=_SOLID, DRAWN_TRANSPARENT=_TRANSPARENT)
 
 HEADLIGHT = 0.6
 """Radiance of a white diffuse surface that faces the viewer, whatever the exposure: nothing is known of the lights."""
 _DARKEST_SKY, _BRIGHTEST_SKY = 0.05, 0.6
+_MOST_TRIANGLES = 1 << 22
+"""Triangles of instances that are not expanded, up to which these are drawn; more take seconds."""
 
 
 class FirstLook(BufferSet):
@@ -42,6 +58,7 @@ class FirstLook(BufferSet):
 
     _surfaces = StorageBuffer("plain surfaces", PLAIN_SURFACE, block="PlainSurfaces")
     _opacities = StorageBuffer("opacities of instances", "float", block="InstanceOpacities")
+    _drawn_instances = StorageBuffer("drawn instances", "uint", block="DrawnInstances")
     _camera = StorageBuffer("camera of the first look", CAMERA_VIEW, 1, block="Camera")
 
     def __init__(
@@ -51,15 +68,18 @@ class FirstLook(BufferSet):
         geometry: Geometry,
         displaced: Callable[[Scene], Scene] = lambda scene: scene,
         centered: Callable[[Scene], Scene] = lambda scene: scene,
+        instanced: Callable[[Scene], np.ndarray | None] = lambda _scene: None,
     ) -> None:
         """geometry: that of the mapper that renders the scenes later, which then has it on the device already;
         displaced: gives a scene with the meshes that the mapper has in place of its own, as far as that is known;
-        centered: gives a scene with the places that the mapper has."""
+        centered: gives a scene with the places that the mapper has; instanced: which of a scene's instances are not
+        expanded, as instanced_members says."""
         super().__init__(context, library)
         self._context = context
+        self._library = library
         self._draw = library.draw("viewport/first_look/first_look.vert", "viewport/first_look/first_look.frag")
         self._geometry = geometry
-        self._displaced, self._centered = displaced, centered
+        self._displaced, self._centered, self._instanced = displaced, centered, instanced
         self._shown: Scene | None = None
         self._blends = False
         """Whether something is neither opaque nor a hole."""
@@ -124,24 +144,52 @@ class FirstLook(BufferSet):
         sky = self._sky * (np.clip(brightest * scene.exposure, _DARKEST_SKY, _BRIGHTEST_SKY) / brightest)
         if not sky.any():
             sky = np.full(3, _DARKEST_SKY)
+        parameters = {"sky": sky, "headlight": HEADLIGHT, "exposure": scene.exposure, "drawn": drawn}
         blended = drawn == _TRANSPARENT
         framebuffer.depth_mask = not blended  # what is transparent hides nothing
         self._context.moderngl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        self._draw.draw(
-            framebuffer,
-            3 * self._geometry.triangle_count,
-            {**self._geometry.blocks, **self.blocks, "Camera": camera},
-            {"sky": sky, "headlight": HEADLIGHT, "exposure": scene.exposure, "drawn": drawn},
-            state=moderngl.DEPTH_TEST | (moderngl.BLEND if blended else moderngl.NOTHING),
-        )
+        state = moderngl.DEPTH_TEST | (moderngl.BLEND if blended else moderngl.NOTHING)
+        blocks = {**self._geometry.blocks, **self.blocks, "Camera": camera}
+        unused = dict.fromkeys(("first_instance", "instance_vertices", "first_vertex"), 0)
+        self._draw.draw(framebuffer, 3 * self._geometry.triangle_count, blocks, {**parameters, **unused}, state=state)
+        self._draw_instances(framebuffer, blocks, parameters, state)
         framebuffer.depth_mask = True
+
+    def _draw_instances(
+        self,
+        framebuffer: moderngl.Framebuffer,
+        blocks: Mapping[str, Bindable],
+        parameters: dict[str, object],
+        state: int,
+    ) -> None:
+        """Draw the instances that are not expanded, unless their triangles are too many."""
+        instanced = self._geometry.instanced
+        if instanced is None:
+            return
+        lengths = np.array([mesh.triangle_count for mesh in instanced.meshes], np.int64)
+        if lengths[instanced.which].sum() > _MOST_TRIANGLES:
+            return
+        program = self._library.draw("viewport/first_look/instances.vert", "viewport/first_look/first_look.frag")
+        order = np.argsort(instanced.which, kind="stable")
+        self._drawn_instances.upload(instanced.placements[order].astype(np.uint32))
+        counts = np.bincount(instanced.which, minlength=len(lengths))
+        firsts = np.cumsum(counts) - counts
+        for mesh, (length, count, first) in enumerate(zip(lengths.tolist(), counts.tolist(), firsts.tolist())):
+            of_mesh = {
+                "first_instance": first,
+                "instance_vertices": 3 * length,
+                "first_vertex": 3 * int(instanced.mesh_first_triangles[mesh]),
+            }
+            inputs = {**blocks, **self._geometry.placement_blocks, **self.blocks}
+            program.draw(framebuffer, 3 * length * count, inputs, {**parameters, **of_mesh}, state=state)
 
     def take(self, scene: Scene) -> Scene:
         """Upload what is not the very object of the scene before; returns the scene to be drawn, which is centered."""
         scene = self._centered(scene)
         if not self._has_parts_of(scene):
             self._shown = None
-            self._geometry.build(self._displaced(scene), len(scene.materials))
+            displaced = self._displaced(scene)
+            self._geometry.build(displaced, len(scene.materials), is_instanced=self._instanced(displaced))
             surfaces = [plain_surface(owner.graph, scene.images) for owner in (*scene.materials, default_material())]
             opacities = [_opacity(placement.instance) for placement in self._geometry.placements]
             self._surfaces.upload(_records(surfaces))

@@ -35,7 +35,12 @@ class FirstLooks:
         if self._look is None:
             built = mapper.device_scene
             self._look = FirstLook(
-                self._context, self._library, built.geometry, built.displacement.as_known, built.centering.centered
+                self._context,
+                self._library,
+                built.geometry,
+                built.displacement.as_known,
+                built.centering.centered,
+                built.acceleration.instanced_members,
             )
         return self._look
 

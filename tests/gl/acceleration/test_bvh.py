@@ -67,9 +67,9 @@ HARD = {
 @pytest.mark.parametrize("place", HARD)
 def test_hierarchies_hold_each_box_once_and_are_not_deep(place):
     low = HARD[place](np.random.default_rng(3), 3001).astype(np.float32)
-    leaves = np.uint32(leaves.LEAF) | np.arange(3001, dtype=np.uint32)
-    nodes = clustering.build_nodes(low, low + np.float32(0.01), leaves.copy())
-    np.testing.assert_array_equal(leaves_of(nodes), leaves)
+    numbered = np.uint32(leaves.LEAF) | np.arange(3001, dtype=np.uint32)
+    nodes = clustering.build_nodes(low, low + np.float32(0.01), numbered.copy())
+    np.testing.assert_array_equal(leaves_of(nodes), numbered)
     assert_boxes_enclose(nodes)
     assert depth_of(nodes) <= clustering.MAX_DEPTH
 
@@ -77,8 +77,8 @@ def test_hierarchies_hold_each_box_once_and_are_not_deep(place):
 def test_hierarchies_are_the_same_each_time():
     """Whatever the number of threads that build them."""
     low = np.random.default_rng(4).normal(size=(3, 50_000)).astype(np.float32)
-    leaves = np.uint32(leaves.LEAF) | np.arange(50_000, dtype=np.uint32)
-    built = [clustering.build_nodes(low.copy(), low + np.float32(0.01), leaves.copy()) for _ in range(2)]
+    numbered = np.uint32(leaves.LEAF) | np.arange(50_000, dtype=np.uint32)
+    built = [clustering.build_nodes(low.copy(), low + np.float32(0.01), numbered.copy()) for _ in range(2)]
     np.testing.assert_array_equal(*built)
     assert depth_of(built[0]) < 40
 

@@ -9,7 +9,7 @@ import scenes
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.viewport.first_look import FirstLook
-from rppm_addon.scene import Scene, World
+from rppm_addon.scene import Instancing, Scene, World
 from rppm_addon.scene.meshes import RayVisibility
 from rppm_addon.session.placeholders import first_looks
 
@@ -134,3 +134,18 @@ def test_the_pictures_after_a_first_look_are_the_same(draw, mapper, other_mapper
         renderer.iterate()
         pictures.append(renderer.film.read_radiance())
     np.testing.assert_array_equal(*pictures)
+
+
+def test_instances_that_are_not_expanded_are_drawn_where_expanded_ones_are(mapper, context, library):
+    """Flat triangles differ from smooth ones by their shading alone."""
+    built, drawn = mapper.device_scene, []
+    for instancing in (Instancing.EXPANDED, Instancing.TWO_LEVELS):
+        look = FirstLook(context, library, built.geometry, instanced=built.acceleration.instanced_members)
+        drawn.append(look.draw(scenes.room(SIZE, instancing=instancing)))
+        look.release()
+        assert (built.geometry.instanced is None) == (instancing is Instancing.EXPANDED)
+    expanded, in_levels = drawn
+    np.testing.assert_array_equal(in_levels[..., 3], expanded[..., 3])
+    differs = np.abs(in_levels - expanded).max(axis=-1) > 0.0
+    assert 0.02 < differs.mean() < 0.2  # the two balls
+    assert np.abs(in_levels - expanded)[differs].mean() < 0.05

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rule by which instances are expanded to world triangles."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from support.lobes import Lobe, LobeKind, material
+
+from rppm_addon.integrator.device_scene import instancing
+from rppm_addon.integrator.device_scene.instancing import MovedInstances, instanced_members
+from rppm_addon.scene import (
+    AccelerationStructure,
+    Camera,
+    Deformation,
+    FirstCameraHits,
+    Instance,
+    Instancing,
+    Movement,
+    RenderSettings,
+    Scene,
+    Shutter,
+)  # fmt: skip
+from rppm_addon.scene.passes import DEEP_CUBEMAP, VECTOR
+from rppm_addon.self_test.meshes import placed, rectangle, sphere
+
+PLAIN, GLOWING, FILLED = range(3)
+KEYS = np.array([0.0, 1.0])
+
+
+def scene_of(*members: tuple[int, int], **settings: object) -> Scene:
+    """Instances as (mesh, material); mesh 0 is a ball, 1 a rectangle."""
+    meshes = [sphere("ball"), rectangle("wall", (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0))]
+    materials = [
+        material("plain", Lobe(LobeKind.DIFFUSE)),
+        material("glowing", Lobe(LobeKind.EMISSION)),
+        material("filled", Lobe(LobeKind.GLASS), absorption=np.ones(3)),
+    ]
+    instances = [Instance(mesh, placed(k, 0, 0), [kind]) for k, (mesh, kind) in enumerate(members)]
+    camera = Camera(np.eye(4), (-1, 1, -1, 1), 8, 8)
+    return Scene(camera, meshes, instances, materials, settings=RenderSettings(**settings))
+
+
+def members_of(scene: Scene, moved: tuple[int, ...] = (), is_software: bool = True) -> list[int]:
+    has_moved = np.zeros(len(scene.instances), bool)
+    has_moved[list(moved)] = True
+    found = instanced_members(scene, has_moved, is_software)
+    return [] if found is None else np.flatnonzero(found).tolist()
+
+
+TWO_LEVELS = {"instancing": Instancing.TWO_LEVELS}
+BALLS = [(0, PLAIN)] * 3
+"""Three balls that share a mesh."""
+
+
+def test_meshes_that_occur_more_than_once():
+    assert members_of(scene_of(*BALLS, (1, PLAIN), **TWO_LEVELS)) == [0, 1, 2]
+
+
+@pytest.mark.parametrize("kind", [GLOWING, FILLED])
+def test_what_emits_or_is_filled_is_expanded(kind):
+    assert members_of(scene_of((0, PLAIN), (0, kind), (0, PLAIN), **TWO_LEVELS)) == [0, 2]
+    assert members_of(scene_of((0, PLAIN), (0, kind), **TWO_LEVELS)) == []
+
+
+def test_what_bends_is_expanded():
+    scene = scene_of(*BALLS, **TWO_LEVELS)
+    mesh = scene.meshes[0]
+    bending = Deformation(0, KEYS, np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
+    assert members_of(dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[bending]))) == []
+
+
+def test_few_triangles_are_expanded_unless_asked_for(monkeypatch):
+    assert members_of(scene_of(*BALLS * 10)) == []
+    monkeypatch.setattr(instancing, "MANY_TRIANGLES", 1)
+    assert members_of(scene_of(*BALLS * 10)) == list(range(30))
+    assert members_of(scene_of(*BALLS * 10, instancing=Instancing.EXPANDED)) == []
+
+
+def test_instances_that_save_little_are_expanded_until_they_move(monkeypatch):
+    monkeypatch.setattr(instancing, "MANY_TRIANGLES", 1)
+    few = scene_of(*BALLS)
+    assert members_of(few) == []
+    assert members_of(few, moved=(1,)) == [1]
+
+
+def test_an_object_that_occurs_once_and_moves():
+    assert members_of(scene_of((0, PLAIN), (1, PLAIN), **TWO_LEVELS), moved=(0,)) == [0]
+    assert members_of(scene_of((0, GLOWING), (1, PLAIN), **TWO_LEVELS), moved=(0,)) == []
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"acceleration_structure": AccelerationStructure.DEEP_CUBEMAP},
+        {"first_camera_hits": FirstCameraHits.RASTERIZED},
+        {"passes": ("Combined", VECTOR)},
+        {"passes": ("Combined", DEEP_CUBEMAP.name)},
+    ],
+)
+def test_what_looks_at_world_triangles_has_one_level(settings):
+    assert members_of(scene_of(*BALLS, **TWO_LEVELS)) != []
+    assert members_of(scene_of(*BALLS, **TWO_LEVELS, **settings)) == []
+
+
+def moved_in(*scenes: Scene) -> list[int]:
+    movers = MovedInstances()
+    for scene in scenes:
+        found = movers.follow(scene)
+    return np.flatnonzero(found).tolist()
+
+
+def with_instance(scene: Scene, member: int, **members: object) -> Scene:
+    instances = [*scene.instances]
+    instances[member] = dataclasses.replace(instances[member], **members)
+    return dataclasses.replace(scene, instances=instances)
+
+
+def test_instances_that_move_from_scene_to_scene():
+    first = scene_of(*BALLS)
+    second = with_instance(first, 1, matrix=placed(0, 0, 5))
+    assert moved_in(first) == moved_in(first, first) == []
+    assert moved_in(first, second) == moved_in(first, second, second) == [1]
+    assert moved_in(first, second, with_instance(second, 2, matrix=placed(0, 0, 6))) == [1, 2]
+    assert moved_in(first, with_instance(first, 1, random=0.5)) == []
+    assert moved_in(first, second, scene_of(*BALLS, (1, PLAIN))) == []
+
+
+def test_instances_that_move_while_the_shutter_is_open():
+    scene = scene_of(*BALLS)
+    movement = Movement(2, KEYS, np.stack([placed(0, 0, 0), placed(0, 0, 1)]))
+    assert moved_in(dataclasses.replace(scene, shutter=Shutter(np.ones(4), instances=[movement]))) == [2]
