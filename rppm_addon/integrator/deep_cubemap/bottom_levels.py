@@ -16,6 +16,8 @@ _FEW_TRIANGLES = 2000
 """Triangles of meshes whose base level is coarse, as 1638 cells would be more than they are worth."""
 _SHARED_EXPONENTS = 4
 """Log2 of the ratio of the largest margin of instances that share a cubemap to the smallest."""
+_MAX_RATIO = 2.0**40
+"""Largest margin, in least margins: no ray finds an instance that rounding blurs so far."""
 _CELL_MARGINS = 16.0
 """Least size of cells, and of the core, in margins: rays of far instances are that inexact in object space."""
 _MAX_EXPONENT = 14
@@ -59,8 +61,7 @@ class MeshBounds:
         Rays are the less exact in object space the farther away and the smaller an instance is. Cells are widened by
         the margin, so instances share those of the largest margin as long as theirs is not much smaller.
         """
-        with np.errstate(over="ignore"):
-            ratios = np.clip(margins / self.least_margin, 1.0, 1e30)
+        ratios = np.clip(np.nan_to_num(margins, posinf=1e30) / self.least_margin, 1.0, _MAX_RATIO)
         exponents = np.ceil(np.log2(ratios) - 1e-9).astype(np.int64)
         shared, left = np.zeros_like(exponents), np.ones(len(exponents), bool)
         while left.any():
