@@ -101,7 +101,7 @@ StorageBlock("CellEntries", "uvec2 cell_entries[];")
 StorageBlock("InstanceBoxes", "vec4 instance_boxes[];")
 """The low and the high corner of each."""
 StorageBlock("DeepCubemaps", "DeepCubemapState deep_cubemaps[];")
-"""Of two levels: those of world triangles and of instances, then those of meshes."""
+"""Cubemaps of two levels: those of world triangles and of instances, then those of meshes."""
 WORLD_LEVEL, INSTANCE_LEVEL, FIRST_MESH = range(3)
 Constants("CubemapLevels", WORLD_LEVEL=WORLD_LEVEL, INSTANCE_LEVEL=INSTANCE_LEVEL)
 BOX_TRIANGLES = 12
