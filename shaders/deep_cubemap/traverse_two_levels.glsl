@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tracing rays through two levels of deep cubemaps (rppm_addon/integrator/deep_cubemap/levels.py). The top level are two
-// cubemaps around the scene's center: one of world triangles, one of instances, in which a cell lists the boxes of these
-// by depth. The mesh of an instance has a cubemap of its own in object space.
+// Tracing rays through two levels of deep cubemaps (rppm_addon/integrator/deep_cubemap/levels.py). The top level is two
+// cubemaps around the scene's center: one of world triangles, and one of instances, in which a cell lists the boxes of
+// these by depth. The mesh of an instance has a cubemap of its own in object space.
 //
 // In a mesh's cubemap the ray goes on in object space, where its direction keeps its scale: distances are those of the
 // world. Its triangles are tested in the world, so that hits are the same as those of triangles that lie there.
