@@ -17,10 +17,21 @@ from .records import CELL
 class CubemapSource(Protocol):
     """Buffers that hold a cubemap, from places that its STATE names on."""
 
-    cells: GrowingBuffer
-    entries: GrowingBuffer
-    bins: GrowingBuffer
-    core: GrowingBuffer
+    @property
+    def cells(self) -> GrowingBuffer:
+        """Cells, CELL records."""
+
+    @property
+    def entries(self) -> GrowingBuffer:
+        """Entries of cells, uvec2."""
+
+    @property
+    def bins(self) -> GrowingBuffer:
+        """Ends of depth bins, uint."""
+
+    @property
+    def core(self) -> GrowingBuffer:
+        """Core list, uint."""
 
 
 _NO_ITEMS = 0, 0, MAX_LISTED

@@ -114,7 +114,7 @@ def test_hits_equal_those_of_expanded_instances(mapper, other_mapper, library, n
         np.testing.assert_array_equal(found, wanted)
 
 
-@pytest.mark.parametrize("arguments", [{"texel_buffers": False}, {"max_cluster_size": 4}])
+@pytest.mark.parametrize("arguments", [{"texel_buffers": False}, {"max_cluster_size": 4}, {"rasterize": True}])
 def test_variants_of_cubemaps_find_the_same_hits(mapper, other_mapper, library, monkeypatch, arguments):
     mesh, places = CLOUDS["long"]
     matrices = places(np.random.default_rng(5))
@@ -124,7 +124,7 @@ def test_variants_of_cubemaps_find_the_same_hits(mapper, other_mapper, library, 
 
     class Variant(DeepCubemap):
         def __init__(self, context, library, **_):
-            super().__init__(context, library, rasterize=False, **arguments)
+            super().__init__(context, library, **{"rasterize": False, **arguments})
 
     monkeypatch.setattr(acceleration, "DeepCubemap", Variant)
     for found, wanted in zip(hits_of(other_mapper, library, scene, rays), expected, strict=True):
