@@ -5,6 +5,8 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 TRIANGLE_CLUSTERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 TRIANGLE_CLUSTERS=1
 // The nearest hit of each ray.
 layout(local_size_x = 64) in;
 #include "common/active_paths.glsl"

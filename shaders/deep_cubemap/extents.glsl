@@ -11,6 +11,12 @@ uvec2 pack_extent(vec2 low, vec2 high) {
     return uvec2(least.x | least.y << 16, greatest.x | greatest.y << 16);
 }
 
+// The rectangle around two.
+uvec2 extent_around(uvec2 one, uvec2 other) {
+    return uvec2(min(one.x & 0xffffu, other.x & 0xffffu) | min(one.x >> 16, other.x >> 16) << 16,
+                 max(one.y & 0xffffu, other.y & 0xffffu) | max(one.y >> 16, other.y >> 16) << 16);
+}
+
 // First and last of the cells that it touches, each side of the face cut into 2^side_exponent.
 ivec4 extent_cells(uvec2 extent, int side_exponent) {
     return ivec4(extent.x & 0xffffu, extent.x >> 16, extent.y & 0xffffu, extent.y >> 16) >> (16 - side_exponent);

@@ -29,11 +29,6 @@ bool lie_together(uint first, uint size) {
     return half_surface(high - low) <= MAX_LOOSENESS * sum;
 }
 
-uvec2 extent_around(uvec2 one, uvec2 other) {
-    return uvec2(min(one.x & 0xffffu, other.x & 0xffffu) | min(one.x >> 16, other.x >> 16) << 16,
-                 max(one.y & 0xffffu, other.y & 0xffffu) | max(one.y >> 16, other.y >> 16) << 16);
-}
-
 // Once for all faces: what every triangle adds to all of them.
 void enter_triangles(uint first, uint size) {
     for (uint triangle = first; triangle < first + size; ++triangle) {

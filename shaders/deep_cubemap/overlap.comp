@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: TRIANGLE_CLUSTERS=1
+// lint: INSTANCE_BOXES=1
 // What overlap.vert and overlap.frag do, without the rasterizer. A group takes as many jobs as it has
 // threads and distributes all their cells evenly, whatever the sizes of the rectangles.
 layout(local_size_x = 64) in;

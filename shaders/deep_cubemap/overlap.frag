@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: TRIANGLE_CLUSTERS=1
+// lint: INSTANCE_BOXES=1
 // A pixel is a cell of the job's rectangle; the test decides whether the triangle touches it.
 #define DEEP_CUBEMAP_BUILD
 #include <OverlapDraw>

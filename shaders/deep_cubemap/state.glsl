@@ -2,6 +2,7 @@
 // What all kernels know of the cubemap: where it is, how fine, how much it holds.
 // Build kernels, which count in it, define DEEP_CUBEMAP_BUILD first.
 #include <DeepCubemapState>
+#include "deep_cubemap/sortable_bits.glsl"
 
 #ifdef DEEP_CUBEMAP_BUILD
 #define DEEP_CUBEMAP_ACCESS
@@ -10,11 +11,3 @@
 #endif
 
 DEEP_CUBEMAP_ACCESS buffer DeepCubemap { DeepCubemapState deep_cubemap; };
-
-// Bits of floats that sort as the floats do, and back.
-uvec3 sortable_bits(vec3 v) {
-    uvec3 bits = floatBitsToUint(v);
-    return bits ^ (uvec3(ivec3(bits) >> 31) | 0x80000000u);
-}
-
-vec3 from_sortable_bits(uvec3 bits) { return uintBitsToFloat(bits ^ (((bits >> 31u) - 1u) | 0x80000000u)); }

@@ -48,9 +48,10 @@ struct Corners {
 
 // About the center.
 Corners corners_of(uint triangle) {
-    return Corners(triangle_vertices[3u * triangle].xyz - deep_cubemap.center,
-                   triangle_vertices[3u * triangle + 1u].xyz - deep_cubemap.center,
-                   triangle_vertices[3u * triangle + 2u].xyz - deep_cubemap.center);
+    uint first = 3u * (deep_cubemap.first_triangle + triangle);
+    return Corners(triangle_vertices[first].xyz - deep_cubemap.center,
+                   triangle_vertices[first + 1u].xyz - deep_cubemap.center,
+                   triangle_vertices[first + 2u].xyz - deep_cubemap.center);
 }
 
 bool is_finite(Corners corners) { return is_finite(corners.a) && is_finite(corners.b) && is_finite(corners.c); }

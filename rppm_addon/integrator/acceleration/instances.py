@@ -113,4 +113,9 @@ class InstancedMeshes:
     first_hits: dict[HitPaths, int]
     """The first hit triangle of each list of paths, counted from first_hit_triangle."""
     gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
-    """Makes world triangles of the hits (HIT) of a list of paths, by the blocks of the acceleration structure."""
+    """Makes world triangles of the hits (HIT) of active paths of a list, by the acceleration structure's blocks."""
+
+    @property
+    def triangle_count(self) -> int:
+        """Triangles of all meshes."""
+        return sum(mesh.triangle_count for mesh in self.meshes)

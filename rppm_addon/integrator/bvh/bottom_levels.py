@@ -5,7 +5,7 @@ import numpy as np
 
 from ...scene.meshes import Mesh
 from ..acceleration.acceleration_structure import MARGIN
-from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, INSTANCE_LEAF, InstancedMeshes
+from ..acceleration.instances import INSTANCE_LEAF, InstancedMeshes
 from .clustering import NODE
 from .leaves import EMPTY_LEAF, LEAF, box_nodes, triangle_nodes
 
@@ -77,27 +77,6 @@ def _root_box(nodes: np.ndarray, reduce: np.ufunc, side: str) -> np.ndarray:
     if root["child1"] == EMPTY_LEAF:
         return np.asarray(root[f"{side}0"])
     return np.asarray(reduce(root[f"{side}0"], root[f"{side}1"]))
-
-
-def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float) -> np.ndarray:
-    """BOTTOM_LEVEL_INSTANCE records; reach: how far from the world's origin anything is, meters."""
-    records = BOTTOM_LEVEL_INSTANCE.zeros(max(len(instanced.which), 1))
-    if not len(instanced.which):
-        return records
-    for row in range(3):
-        records[f"to_object{row}"] = instanced.inverses[:, row]
-        records[f"row{row}"] = instanced.entries[f"row{row}"]
-    for name in ("pivot", "set_code"):
-        records[name] = instanced.entries[name]
-    records["first_triangle"] = instanced.mesh_first_triangles[instanced.which]
-    records["root"] = roots[instanced.which]
-    records["placement"] = instanced.placements
-    x, y, z = (instanced.matrices[:, :3, column] for column in range(3))
-    records["mirrored"] = (x * np.cross(y, z)).sum(axis=1) < 0.0
-    # Rounding of a ray's origin, and of the vertices in the world.
-    scales = np.linalg.norm(instanced.inverses[:, :, :3], axis=(1, 2))
-    records["margin"] = MARGIN * reach * scales
-    return records
 
 
 def _mesh_nodes(mesh: Mesh) -> np.ndarray:

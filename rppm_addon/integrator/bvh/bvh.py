@@ -16,8 +16,9 @@ from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
+from ..acceleration.instance_records import instance_records
 from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, WorldPlacements
-from .bottom_levels import BottomLevels, instance_records, moved_nodes, top_level_nodes
+from .bottom_levels import BottomLevels, moved_nodes, top_level_nodes
 from .clustering import MAX_DEPTH, NODE
 from .leaves import LEAF, triangle_nodes
 
@@ -86,7 +87,7 @@ class Bvh(AccelerationStructure):
             self._nodes.write(levels.nodes())
             self._nodes.write(moved_nodes(self._world_nodes, first_world), first_world * NODE.size)
         self._nodes.write(top, first_top * NODE.size)
-        self._instances.upload(instance_records(instanced, levels.roots, reach))
+        self._instances.upload(instance_records(instanced, levels.roots[instanced.which], reach))
         state = TOP_LEVEL.zeros(1)
         state["root"], state["first_hit_triangle"] = first_top, instanced.first_hit_triangle
         state["hit_triangle_count"] = instanced.hit_triangle_count

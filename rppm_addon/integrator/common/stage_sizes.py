@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from ...materials.traits.subsurface import has_subsurface
 from ...scene.passes import CAUSTICS, SCATTERED_LIGHT, VOLUME_LIGHT, RenderPass
 from ...scene.scene import Scene
-from ...scene.settings import FirstCameraHits
+from ...scene.settings import FirstCameraHits, Instancing, RenderSettings
 from .active_paths import SEGMENTS_AT_ONCE
 from .band import Band, bands_of, rows_of_bands
 from .camera_view import is_rasterized
@@ -56,7 +56,7 @@ class StageSizes:
             scene.settings.photon_bounces + 1,
             passes,
             any(instance.shadow_catcher for instance in scene.instances),
-            scene.settings.first_camera_hits if is_rasterized(scene.camera) else None,
+            _first_camera_hits(scene.settings) if is_rasterized(scene.camera) else None,
             scene.camera.texels is not None,
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,
@@ -84,6 +84,12 @@ class StageSizes:
     def bands(self) -> list[Band]:
         """Bands of the film, from below; the first has the most rows."""
         return bands_of(self.width, self.height)
+
+
+def _first_camera_hits(settings: RenderSettings) -> FirstCameraHits:
+    """Return the route: where two levels are asked for, the camera has no world triangles to rasterize."""
+    route, in_levels = settings.first_camera_hits, settings.instancing is Instancing.TWO_LEVELS
+    return FirstCameraHits.TRACED if in_levels and route is FirstCameraHits.AUTOMATIC else route
 
 
 def _links_lights(scene: Scene) -> bool:

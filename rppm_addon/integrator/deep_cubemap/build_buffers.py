@@ -56,7 +56,8 @@ class BuildBuffers(BufferSet):
     _binned_fragments = StorageBuffer(
         "deep cubemap binned fragments", BINNED_FRAGMENT, texel_bytes=4, block="BinnedFragments"
     )
-    _core = StorageBuffer("deep cubemap core list", "uint", 16, block="CoreTriangles")
+    core = StorageBuffer("deep cubemap core list", "uint", 16, block="CoreTriangles")
+    boxes = StorageBuffer("boxes of instances", "vec4", texel_bytes=16, block="InstanceBoxes")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -73,7 +74,7 @@ class BuildBuffers(BufferSet):
             "entry": self.entries,
             "binned_cell": self._binned_cells,
             "binned_fragment": self._binned_fragments,
-            "core": self._core,
+            "core": self.core,
         }
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Clusters of triangles that the lists of a deep cubemap name together."""
+"""Items that the lists of a deep cubemap name: clusters of triangles, or boxes of instances."""
 
 from dataclasses import dataclass
 
@@ -15,6 +15,8 @@ class Clusters:
 
     max_size: int = 1
     """Triangles of the largest cluster; 1 where each triangle is listed by itself."""
+    are_boxes: bool = False
+    """Whether boxes of instances, one by one, are listed in place of triangles."""
 
     @classmethod
     def of_scene(cls, triangle_count: int) -> "Clusters":
@@ -25,6 +27,8 @@ class Clusters:
     @property
     def defines(self) -> dict[str, object]:
         """Defines of programs that read which triangles an entry names."""
+        if self.are_boxes:
+            return {"INSTANCE_BOXES": 1}
         return {"TRIANGLE_CLUSTERS": 1} if self.max_size > 1 else {}
 
     @property

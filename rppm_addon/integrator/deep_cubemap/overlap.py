@@ -15,8 +15,10 @@ _UNLIMITED_SIDE = 1 << 30
 
 
 def list_overlap_jobs(buffers: BuildBuffers, triangle_count: int, clusters: Clusters) -> None:
-    """List for each triangle, or cluster, the tiles of the base level that it may touch."""
-    if clusters.max_size > 1:
+    """List for each triangle, or cluster, or box, the tiles of the base level that it may touch."""
+    if clusters.are_boxes:
+        buffers.run("list_instance_jobs", triangle_count)
+    elif clusters.max_size > 1:
         defines = {**clusters.defines, "MAX_CLUSTER_SIZE": f"{clusters.max_size}u"}
         buffers.run("list_cluster_jobs", -(-triangle_count // clusters.max_size), None, defines)
     else:

@@ -22,6 +22,12 @@ STATE = Record(
     min_gain="uint",
     max_bins="uint",
     triangle_count="uint",
+    first_triangle="uint",
+    box_triangles="uint",
+    first_cell="uint",
+    first_entry="uint",
+    first_bin="uint",
+    first_core="uint",
     bin_count="uint",
     propagated_binned_count="uint",
     tile_count="uint",
@@ -42,7 +48,9 @@ STATE = Record(
     core_capacity="uint",
 )
 """Lengths in meters. ``margin``: how far cells are widened; ``root_exponent``: log2 of the roots along
-a face's side. The counts may pass the capacities, then something was dropped and building starts over."""
+a face's side; ``first_triangle``: in the block Triangles, from which on triangles are counted; ``box_triangles``: of a
+box; ``first_cell``, ``first_entry``, ``first_bin``, ``first_core``: where its parts begin in blocks that several
+cubemaps share. The counts may pass the capacities, then something was dropped and building starts over."""
 
 CELL = Record("CubemapCell", near_complement="uint", far="uint", slices="uint", content="uint")
 FRAGMENT = Record(
@@ -90,3 +98,11 @@ Constants("DepthBins", signed=True, MAX_JOIN=MAX_JOIN)
 StorageBlock("BinnedFragments", "BinnedFragment binned_fragments[];")
 StorageBlock("OverlapJobs", "uvec4 overlap_jobs[];")
 StorageBlock("CellEntries", "uvec2 cell_entries[];")
+StorageBlock("InstanceBoxes", "vec4 instance_boxes[];")
+"""The low and the high corner of each."""
+StorageBlock("DeepCubemaps", "DeepCubemapState deep_cubemaps[];")
+"""Cubemaps of two levels: those of world triangles and of instances, then those of meshes."""
+WORLD_LEVEL, INSTANCE_LEVEL, FIRST_MESH = range(3)
+Constants("CubemapLevels", WORLD_LEVEL=WORLD_LEVEL, INSTANCE_LEVEL=INSTANCE_LEVEL)
+BOX_TRIANGLES = 12
+"""Triangles of a box. Shaders get it in the state, for the same reason as TILE_CELLS."""

@@ -9,7 +9,7 @@ from ...scene.materials import Material
 from ...scene.meshes import Instance
 from ...scene.passes import DEEP_CUBEMAP, VECTOR
 from ...scene.scene import Scene
-from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
+from ...scene.settings import FirstCameraHits, Instancing
 from ...scene.storage.sharing import same_members
 
 MANY_TRIANGLES = 1 << 18
@@ -82,11 +82,10 @@ def _may_be_instanced(scene: Scene, meshes: np.ndarray) -> np.ndarray:
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     """Whether all that looks at the triangles of a scene does so by rays and what they hit."""
     settings = scene.settings
-    structures = (AccelerationStructure.BVH, *((AccelerationStructure.AUTOMATIC,) if is_software else ()))
-    first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_software else ()))
+    is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
+    first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
     return (
-        settings.acceleration_structure in structures
-        and settings.first_camera_hits in first_hits
+        settings.first_camera_hits in first_hits
         and scene.camera.texels is None
         and not {VECTOR, DEEP_CUBEMAP.name} & set(settings.passes)
         and not any(traces_rays(material.graph) for material in scene.materials)

@@ -4,6 +4,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl
 // How much of the disk in which global photons count lies on surfaces, where a gathering ray ends: short rays across
 // the disk, until one meets surface. Their number has the mean 1 / part (Booth, Unbiased Monte Carlo Estimation of the
 // Reciprocal of an Integral, 2007), which is what the photons there have to be multiplied by.

@@ -4,6 +4,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl
 // Some steps of random walks below surfaces, as Cycles takes them: directions and distances are guided to the surface
 // where the walk went in, or to an opposite one that is near.
 // Krivanek and d'Eon, A Zero-Variance-Based Sampling Scheme for Monte Carlo Subsurface Scattering (2014).

@@ -4,6 +4,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl
 // Soft lights with surfaces near them face the point where a photon hits with a disk that the photon's ray meets a
 // little behind where it began: what lies in between hides that place, as it does from shadow rays.
 

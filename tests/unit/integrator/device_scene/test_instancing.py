@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from support.lobes import Lobe, LobeKind, material
 
+from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.device_scene import instancing
 from rppm_addon.integrator.device_scene.instancing import MovedInstances, instanced_members
 from rppm_addon.scene import (
@@ -92,7 +93,6 @@ def test_an_object_that_occurs_once_and_moves():
 @pytest.mark.parametrize(
     "settings",
     [
-        {"acceleration_structure": AccelerationStructure.DEEP_CUBEMAP},
         {"first_camera_hits": FirstCameraHits.RASTERIZED},
         {"passes": ("Combined", VECTOR)},
         {"passes": ("Combined", DEEP_CUBEMAP.name)},
@@ -101,6 +101,15 @@ def test_an_object_that_occurs_once_and_moves():
 def test_what_looks_at_world_triangles_has_one_level(settings):
     assert members_of(scene_of(*BALLS, **TWO_LEVELS)) != []
     assert members_of(scene_of(*BALLS, **TWO_LEVELS, **settings)) == []
+
+
+@pytest.mark.parametrize("structure", AccelerationStructure)
+def test_a_gpu_has_two_levels_where_they_are_asked_for(monkeypatch, structure):
+    monkeypatch.setattr(instancing, "MANY_TRIANGLES", 1)
+    assert members_of(scene_of(*BALLS * 10, acceleration_structure=structure), is_software=False) == []
+    asked = scene_of(*BALLS, acceleration_structure=structure, **TWO_LEVELS)
+    assert members_of(asked, is_software=False) == [0, 1, 2]
+    assert StageSizes.of(asked).first_camera_hits is FirstCameraHits.TRACED
 
 
 def moved_in(*scenes: Scene) -> list[int]:
