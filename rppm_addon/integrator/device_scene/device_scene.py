@@ -199,14 +199,11 @@ class DeviceScene:
         self.materials.bake_media(scene, placed, bounds, {**geometry.blocks, **self.resolve.blocks})
 
     def _warn_of_media(self, scene: Scene) -> None:
-        """Warn of media of which it is not clear where they are, or whose light is lost."""
+        """Warn of media of which it is not clear where they are, or what shines on them."""
         if not self.materials.media.materials:
             return
         warn_of_open_bodies(scene, self.materials.media.materials, self._checked_bodies)
         self._warn_of_linked_media(scene)
-        settings = scene.settings
-        if self.materials.media.emit and not (settings.use_final_gather and settings.camera_bounces > 0):
-            scene.warn("Volumes that emit light shine on surfaces by Final Gather only, which is off")
 
     def _warn_of_linked_media(self, scene: Scene) -> None:
         media = self.materials.media

@@ -8,11 +8,14 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
+from ...scene.meshes import Instance
 from ...scene.scene import Scene
 from ..records import MATERIAL, MAX_MEDIA, MEDIUM, PHASE_FUNCTION
 from ..traits.interiors import Evaluate, Interior, Variation
+from .emission import EmissiveMedia
 from .grids import EvaluateVoxels, MediumGrids, PlacedMedium
 from .places import MediumPlaces
+from .voxel_evaluation import WORLD
 
 _Medium = tuple[np.void, np.ndarray]
 """A MEDIUM record, and its (n,) PHASE_FUNCTION records."""
@@ -29,6 +32,7 @@ class MediaTables(BufferSet):
     _media = StorageBuffer("media", MEDIUM, block="Media")
     _phase_functions = StorageBuffer("phase functions", PHASE_FUNCTION, block="PhaseFunctions")
     _grids = Part(MediumGrids)
+    emissive = Part(EmissiveMedia)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -79,6 +83,31 @@ class MediaTables(BufferSet):
         baked = self._grids.bake(scene, list(media), evaluate, evaluate_once)
         world = self._even[0] if self.places.world is None else baked.pop()
         self._upload([world, *self._even[1:], *baked])
+
+    def list_emissive(self, scene: Scene, placed: Sequence[Instance], varying: Sequence[PlacedMedium]) -> None:
+        """List the media that emit light, after ``bake``. placed: the instances that have triangles."""
+        self.emissive.clear()
+        if not self.emit:
+            return
+        for number, instance in enumerate(placed):
+            for material in sorted(set(instance.materials)):
+                medium = int(self._records["medium"][material]) if 0 <= material < self._material_count else 0
+                if 0 < medium < len(self._even) and self._even[medium][0]["emission"].any():
+                    self.emissive.add_even(scene, instance, number, medium, self._even[medium][0]["emission"])
+        for index, medium in enumerate(varying):
+            baked, to_object = self._grids.baked(medium), medium.to_object
+            if baked is None or baked.emission_cells is None or to_object is None:
+                continue
+            around = medium.instance == WORLD
+            self.emissive.add_grid(
+                scene,
+                medium,
+                None if around else placed[medium.instance],
+                0 if around else len(self._even) + index,
+                baked.lattice.to_grid @ to_object,
+                baked.emission_cells,
+            )
+        self.emissive.upload()
 
     def _upload(self, listed: list[_Medium]) -> None:
         first = 0

@@ -30,7 +30,7 @@ flat in uint beam_number;
 const float LEAST_SINE = 1e-4;
 
 bool exceeds_depth(uint camera_depth, PhotonBeam beam) {
-    if (!within_volume_bounces(beam.bounce_counts, beam.flags, 1u)) return true;
+    if (!within_volume_bounces(beam.bounce_counts, beam.flags, beam.depth, 1u)) return true;
     uint depth = camera_depth + (beam.depth & DEPTH_MASK), most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u) most = min(most, beam.max_bounces);
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;

@@ -88,7 +88,7 @@ void add_light(uint pixel, uint photon, vec3 radiance) {
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
         add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
     uint flags = photons[photon].flags, first = first_scatter(history);
-    bool indirect = is_indirect(flags, photons[photon].bounce_counts);
+    bool indirect = is_indirect(flags, photons[photon].bounce_counts, photons[photon].depth);
     if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
         add_to_light_sum(pixel, first == SCATTER_NONE ? volume_sum(indirect) : scattered_sum(first, true), radiance);
     bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;
