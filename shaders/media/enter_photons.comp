@@ -24,7 +24,7 @@ buffer PhotonPaths;
 readonly buffer Media;
 #include "media/crossings.glsl"
 #ifdef EMISSIVE_MEDIA
-buffer Emitted { PhotonPath emitted[]; };
+buffer Emitted;
 #include "media/emitted.glsl"
 
 void enter_own_medium(uint index, Light light) {
