@@ -150,7 +150,7 @@ class MaterialTables(BufferSet):
         varying = list(self.media.places.media(scene, placed, bounds)) if any_varies else []
         if any_varies:
             self._bake(scene, varying, {**self.blocks, **blocks})
-        self.media.list_emissive(scene, placed, varying)
+        self.media.list_emissive(scene, placed, bounds, varying)
 
     def _bake(self, scene: Scene, varying: list[PlacedMedium], bound: Mapping[str, Bindable]) -> None:
 

@@ -28,12 +28,21 @@ EMISSIVE_MEDIUM = Record(
     unused0="uint",
     unused1="uint",
     unused2="uint",
+    inner="vec3",
+    boxes="uint",
 )
 """A medium that emits light within an ``instance``, by their numbers; WORLD where it is around everything. In one with
-a grid, photons leave from cells of ``cell_side`` voxels along each axis; without cells, from anywhere in its box."""
+a grid, photons leave from cells of ``cell_side`` voxels along each axis; without cells, from anywhere in one of so many
+``boxes`` about one center, of which the innermost has the extents ``inner`` of the outermost, which is that of the
+light."""
 Constants("EmissionPlaces", AROUND_EVERYTHING=WORLD)
 StorageBlock("EmissiveMedia", "EmissiveMedium emissive_media[];")
 
+_FREE_PATHS, _SCENES = 12.0, 8.0
+"""Margin around the scene from which photons of the world's medium leave: longest mean free paths, but not more than so many
+times the scene's diagonal."""
+_BOXES = 6
+"""Boxes of the world's medium, from that around the scene to the largest: what is far from the scene seldom lights it."""
 _LEAST_FILL = 0.02
 """Least part of its box that a medium is taken to fill, where its mesh has holes or turns inside out."""
 
@@ -50,6 +59,8 @@ class EmissiveMedium:
     """(3,) W that all of the box emits; with a grid, 4 pi times the volume of a voxel, m^3 sr."""
     power: np.ndarray
     """(3,) W that it emits, as far as the volume within its surface is known."""
+    inner: np.ndarray | None = None
+    """(3,) extents of the innermost of several boxes over those of the outermost; None where there is but one."""
 
 
 class EmissiveMedia(BufferSet):
@@ -80,8 +91,17 @@ class EmissiveMedia(BufferSet):
         low, high = positions.min(axis=0), positions.max(axis=0)
         matrix = np.asarray(instance.matrix, np.float64)
         frame = np.stack([matrix[:3, :3] @ low + matrix[:3, 3], *(matrix[:3, :3] * (high - low)).T])
-        strength = 4.0 * math.pi * abs(np.linalg.det(frame[1:])) * np.asarray(emission, np.float64)
-        self._add(EmissiveMedium(number, frame, strength, self._fill(mesh) * strength), medium)
+        self._add(_even_medium(number, frame, emission, self._fill(mesh)), medium)
+
+    def add_world(self, scene: Scene, bounds: tuple[np.ndarray, np.ndarray], world: np.void) -> None:
+        """Add the world's medium, a MEDIUM record, where it is the same everywhere. bounds: of the scene, (3,) each."""
+        camera = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
+        low, high = np.minimum(bounds[0], camera), np.maximum(bounds[1], camera)
+        extinction = float(np.min(world["absorption"] + world["scattering"]))
+        margin = min(_FREE_PATHS / max(extinction, 1e-30), _SCENES * float(np.linalg.norm(high - low)))
+        frame = np.stack([low - margin, *np.diag(high - low + 2.0 * margin)])
+        inner = (high - low) / np.diag(frame[1:])
+        self._add(_even_medium(WORLD, frame, world["emission"], 1.0, inner), 0)
 
     def add_grid(
         self, scene: Scene, placed: PlacedMedium, instance: Instance | None, medium: int, to_grid: np.ndarray,
@@ -100,6 +120,7 @@ class EmissiveMedia(BufferSet):
             return
         record = EMISSIVE_MEDIUM.zeros(1)[0]
         record["instance"], record["medium"] = found.instance, medium
+        record["inner"], record["boxes"] = (1.0, 1) if found.inner is None else (found.inner, _BOXES)
         record["first_cell"] = sum(map(len, self._parts))
         if cells is not None:
             record["cell_count"], record["cell_side"] = len(cells.records), cells.side
@@ -117,6 +138,13 @@ class EmissiveMedia(BufferSet):
         if id(mesh) not in self._fills:
             self._fills[id(mesh)] = mesh, _filled_part(mesh)
         return self._fills[id(mesh)][1]
+
+
+def _even_medium(
+    instance: int, frame: np.ndarray, emission: np.ndarray, fill: float, inner: np.ndarray | None = None
+) -> EmissiveMedium:
+    strength = 4.0 * math.pi * abs(np.linalg.det(frame[1:])) * np.asarray(emission, np.float64)
+    return EmissiveMedium(instance, frame, strength, fill * strength, inner)
 
 
 def _filled_part(mesh: Mesh) -> float:

@@ -84,11 +84,20 @@ class MediaTables(BufferSet):
         world = self._even[0] if self.places.world is None else baked.pop()
         self._upload([world, *self._even[1:], *baked])
 
-    def list_emissive(self, scene: Scene, placed: Sequence[Instance], varying: Sequence[PlacedMedium]) -> None:
-        """List the media that emit light, after ``bake``. placed: the instances that have triangles."""
+    def list_emissive(
+        self,
+        scene: Scene,
+        placed: Sequence[Instance],
+        bounds: tuple[np.ndarray, np.ndarray],
+        varying: Sequence[PlacedMedium],
+    ) -> None:
+        """List the media that emit light, after ``bake``. placed: the instances that have triangles; bounds: of the
+        scene, (3,) each."""
         self.emissive.clear()
         if not self.emit:
             return
+        if self._even[0][0]["emission"].any():
+            self.emissive.add_world(scene, bounds, self._even[0][0])
         for number, instance in enumerate(placed):
             for material in sorted(set(instance.materials)):
                 medium = int(self._records["medium"][material]) if 0 <= material < self._material_count else 0

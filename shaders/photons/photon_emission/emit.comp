@@ -112,7 +112,11 @@ void main() {
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0,
                                      is_hidden_from_media(light, emission) ? HIDDEN_FROM_MEDIA : 0u);
     vec3 left_from = emission.origin;
+#ifdef EMISSIVE_MEDIA
+    bool traced = !dark && (light.kind == LIGHT_MEDIUM || enter_scene(emission.origin, emission.direction));
+#else
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
+#endif
     float before = distance(left_from, emission.origin);
     photon_differentials[index] = leaving_differential(light, emission, before);
     if (emission.reach < INFINITY_DISTANCE) emission.reach = max(emission.reach - before, 0.0);

@@ -58,14 +58,32 @@ MediumPoint sample_grid(Light light, EmissiveMedium source, float part, vec2 pla
 }
 #endif
 
+// The extents of one of several boxes about one center over those of the largest.
+vec3 box_extent(EmissiveMedium source, uint box) {
+    return source.boxes > 1u ? pow(source.inner, vec3(float(box) / float(source.boxes - 1u))) : vec3(1.0);
+}
+
+// Evenly in one of the boxes; the pdf is that of all of them together.
+MediumPoint sample_boxes(Light light, EmissiveMedium source, float part, vec2 place) {
+    float scaled = part * float(source.boxes);
+    uint box = min(uint(scaled), source.boxes - 1u);
+    vec3 at = 0.5 + (vec3(scaled - float(box), place) - 0.5) * box_extent(source, box);
+    float density = 0.0;
+    for (uint k = 0u; k < source.boxes; ++k) {
+        vec3 extent = box_extent(source, k);
+        if (all(lessThanEqual(abs(2.0 * at - 1.0), extent))) density += 1.0 / (extent.x * extent.y * extent.z);
+    }
+    return MediumPoint(light.position + at.x * light.axis_u + at.y * light.axis_v + at.z * light.normal,
+                       light.strength * (float(source.boxes) / max(density, 1.0)));
+}
+
 MediumPoint sample_medium(Light light, float part, vec2 place) {
-#ifdef HETEROGENEOUS_MEDIA
     EmissiveMedium source = emissive_media[light.emissive_medium];
+#ifdef HETEROGENEOUS_MEDIA
     uvec4 bits = pcg4d(uvec4(floatBitsToUint(vec3(part, place)), iteration.number));
     if (source.cell_count > 0u) return sample_grid(light, source, part, place, bits);
 #endif
-    return MediumPoint(light.position + part * light.axis_u + place.x * light.axis_v + place.y * light.normal,
-                       light.strength);
+    return sample_boxes(light, source, part, place);
 }
 
 Emission emit_from_medium(Light light, EmissionChoice choice) {

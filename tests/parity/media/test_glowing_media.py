@@ -84,11 +84,11 @@ def varying_glow() -> None:
     box((0.7, 0.5, 0.8), made, place(at=(-0.2, 0.2, 0.0), turn=(0.0, 20.0, 30.0)))
 
 
-def glowing_world() -> None:
+def glowing_world(density: float = 1.0) -> None:
     """A world whose medium scatters, absorbs and shines."""
     _room()
     net = Net(bpy.context.scene.world.node_tree)
-    scattering = net.out("VolumeScatter", inputs={"Color": (0.8, 0.7, 0.5), "Density": 0.3})
+    scattering = net.out("VolumeScatter", inputs={"Color": (0.8, 0.7, 0.5), "Density": density})
     total = _sum(net, scattering, _emission(net, (0.4, 0.7, 1.0), 0.1))
     net.tree.links.new(total, net.find("OUTPUT_WORLD").inputs["Volume"])
 
