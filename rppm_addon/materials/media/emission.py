@@ -157,4 +157,3 @@ def _filled_part(mesh: Mesh) -> float:
     a, b, c = np.moveaxis(corners - low, 1, 0)
     volume = abs(float((a * np.cross(b, c)).sum())) / 6.0
     return float(np.clip(volume / max(float(np.prod(high - low)), 1e-300), _LEAST_FILL, 1.0))
-
