@@ -47,6 +47,7 @@ class MediaTables(BufferSet):
         self.places = MediumPlaces({}, None, 0)
         """Media that vary."""
         self._records, self._material_count = MATERIAL.zeros(1), 1
+        self._table = MEDIUM.zeros(1)
         self._even: list[_Medium] = []
         """The world's medium, and those that are the same everywhere."""
 
@@ -96,27 +97,29 @@ class MediaTables(BufferSet):
         self.emissive.clear()
         if not self.emit:
             return
+        groups = {name: number for number, name in enumerate(scene.settings.light_groups, 1)}
+        self._table["light_group"][0] = groups.get(scene.world.light_group, 0)
         if self._even[0][0]["emission"].any():
             self.emissive.add_world(scene, bounds, self._even[0][0])
         for number, instance in enumerate(placed):
             for material in sorted(set(instance.materials)):
                 medium = int(self._records["medium"][material]) if 0 <= material < self._material_count else 0
                 if 0 < medium < len(self._even) and self._even[medium][0]["emission"].any():
+                    self._table["light_group"][medium] = groups.get(instance.light_group, 0)
                     self.emissive.add_even(scene, instance, number, medium, self._even[medium][0]["emission"])
         for index, medium in enumerate(varying):
             baked, to_object = self._grids.baked(medium), medium.to_object
             if baked is None or baked.emission_cells is None or to_object is None:
                 continue
-            around = medium.instance == WORLD
-            self.emissive.add_grid(
-                scene,
-                medium,
-                None if around else placed[medium.instance],
-                0 if around else len(self._even) + index,
-                baked.lattice.to_grid @ to_object,
-                baked.emission_cells,
-            )
+            instance = None if medium.instance == WORLD else placed[medium.instance]
+            number = 0 if instance is None else len(self._even) + index
+            if instance is not None:
+                self._table["light_group"][number] = groups.get(instance.light_group, 0)
+            to_grid = baked.lattice.to_grid @ to_object
+            self.emissive.add_grid(scene, medium, instance, number, to_grid, baked.emission_cells)
         self.emissive.upload()
+        if groups:
+            self._media.upload(self._table)
 
     def _upload(self, listed: list[_Medium]) -> None:
         first = 0
@@ -127,6 +130,7 @@ class MediaTables(BufferSet):
         media[: len(listed)] = [record for record, _ in listed]
         media["material_medium"][: len(self._records)] = self._records["medium"]
         media["medium_bits"] = max(int(self._records["medium"].max()).bit_length(), 1)
+        self._table = media
         self._media.upload(media)
         self._phase_functions.upload(np.concatenate([functions for _, functions in listed] + [PHASE_FUNCTION.zeros(1)]))
         self.emit = any(record["emission"].any() for record, _ in listed)

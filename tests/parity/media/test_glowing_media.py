@@ -7,8 +7,9 @@ import pytest
 from ..comparison import CAUSTIC, Tolerance
 from ..engines import compare_with_cycles
 from ..net import Net, diffuse, material
-from ..scenes import GLASS, ball, box, camera, new_scene, place, plane
+from ..scenes import ball, box, camera, new_scene, place, plane
 
+DISTANT = Tolerance(mean=0.03, block=0.06, mode=0.03)
 GLOW = Tolerance(mean=0.01, block=0.03, mode=0.01)
 
 
@@ -56,8 +57,8 @@ def beside_fog() -> None:
     net.output(Volume=net.out("VolumeScatter", inputs={"Color": (0.8, 0.9, 1.0), "Density": 0.5}))
     box((1.0, 0.9, 0.9), fog, place(at=(-0.3, 0.0, 0.0)))
     made, net = material("Glow")
-    net.output(Volume=_emission(net, (1.0, 0.5, 0.2), 12.0))
-    ball(0.3, made, place(at=(-0.6, 0.2, 0.2)), segments=32)
+    net.output(Volume=_emission(net, (1.0, 0.5, 0.2), 3.0))
+    ball(0.5, made, place(at=(-0.6, 0.2, 0.2)), segments=32)
 
 
 def glow_in_glass() -> None:
@@ -84,19 +85,28 @@ def varying_glow() -> None:
     box((0.7, 0.5, 0.8), made, place(at=(-0.2, 0.2, 0.0), turn=(0.0, 20.0, 30.0)))
 
 
-def glowing_world(density: float = 1.0) -> None:
-    """A world whose medium scatters, absorbs and shines."""
+def _shining_world(kind: str, density: float) -> None:
     _room()
     net = Net(bpy.context.scene.world.node_tree)
-    scattering = net.out("VolumeScatter", inputs={"Color": (0.8, 0.7, 0.5), "Density": density})
-    total = _sum(net, scattering, _emission(net, (0.4, 0.7, 1.0), 0.1))
+    volume = net.out(kind, inputs={"Color": (0.8, 0.7, 0.5), "Density": density})
+    total = _sum(net, volume, _emission(net, (0.4, 0.7, 1.0), 0.1))
     net.tree.links.new(total, net.find("OUTPUT_WORLD").inputs["Volume"])
+
+
+def glowing_world(density: float = 1.0) -> None:
+    """A world whose medium scatters and shines."""
+    _shining_world("VolumeScatter", density)
+
+
+def absorbing_world() -> None:
+    """A world whose medium absorbs and shines."""
+    _shining_world("VolumeAbsorption", 0.5)
 
 
 def _compare(renderer, name: str, bounces: int, samples: int = 512, tolerance: Tolerance = GLOW, **settings) -> None:
     cycles = bpy.context.scene.cycles
     cycles.volume_bounces, cycles.max_bounces = bounces, 12
-    settings = {"photons": 32768, "iterations": 24, "volume_bounces": bounces, "max_bounces": 12} | settings
+    settings = {"photons": 16384, "iterations": 24, "volume_bounces": bounces, "max_bounces": 12} | settings
     compare_with_cycles(renderer, f"glow_{name}", samples, tolerance, **settings)
 
 
@@ -109,11 +119,21 @@ def test_scattered_glow(renderer, bounces):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("scene", [absorbing_cube, beside_fog, varying_glow], ids=lambda scene: scene.__name__)
+@pytest.mark.parametrize(
+    "scene", [absorbing_cube, beside_fog, varying_glow, absorbing_world], ids=lambda scene: scene.__name__
+)
 def test_glow(renderer, scene):
     new_scene()
     scene()
     _compare(renderer, scene.__name__, 4)
+
+
+@pytest.mark.long
+def test_a_world_that_scatters_its_own_light(renderer):
+    """Few photons come to the scene from all around it."""
+    new_scene()
+    glowing_world()
+    _compare(renderer, "world", 4, tolerance=DISTANT, photons=65536, iterations=16)
 
 
 @pytest.mark.long
