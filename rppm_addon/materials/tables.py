@@ -141,18 +141,15 @@ class MaterialTables(BufferSet):
         bounds: tuple[np.ndarray, np.ndarray],
         blocks: Mapping[str, Bindable],
     ) -> None:
-        """Bake the media that vary, after place_media, and list those that emit light.
+        """Bake the media that vary, after place_media.
 
         placed: the instances of the scene that have triangles; bounds: of the scene, low and high, (3,) each; blocks:
         what nodes read of instances, by name.
         """
-        any_varies = self.media.places.any
-        varying = list(self.media.places.media(scene, placed, bounds)) if any_varies else []
-        if any_varies:
-            self._bake(scene, varying, {**self.blocks, **blocks})
-        self.media.list_emissive(scene, placed, bounds, varying)
+        if not self.media.places.any:
+            return
 
-    def _bake(self, scene: Scene, varying: list[PlacedMedium], bound: Mapping[str, Bindable]) -> None:
+        bound = {**self.blocks, **blocks}
 
         def evaluate(graph: NodeGraph, lattice: Lattice, placed: PlacedMedium) -> np.ndarray:
             entry, first = self._unattached[id(graph)]
@@ -172,7 +169,7 @@ class MaterialTables(BufferSet):
                 scene.warn(f"{entry.owner}: the driver does not compile its nodes ({first_line(error)}); {NO_EFFECT}")
                 return np.zeros((int(np.prod(lattice.bricks)), BRICK_VOXELS, 3), np.float32)
 
-        self.media.bake(scene, varying, evaluate, self.evaluate)
+        self.media.bake(scene, list(self.media.places.media(scene, placed, bounds)), evaluate, self.evaluate)
 
     def follow(self, scene: Scene) -> None:
         """Warn in this scene and evaluate as its camera sees, though what was built may have come with another."""
