@@ -41,13 +41,13 @@ def absorbing_cube() -> None:
     box((0.5, 0.3, 0.7), made, place(at=(-0.3, 0.2, 0.0), turn=(20.0, 35.0, 10.0)))
 
 
-def scattering_cube() -> None:
+def scattering_cube() -> bpy.types.Object:
     """A cube that scatters its own light."""
     _room()
     made, net = material("Glow")
     scattering = net.out("VolumeScatter", inputs={"Color": (0.9, 0.8, 0.6), "Density": 1.5, "Anisotropy": 0.3})
     net.output(Volume=_sum(net, scattering, _emission(net, (1.0, 0.6, 0.3), 1.0)))
-    box((0.7, 0.7, 0.7), made, place(at=(-0.2, 0.2, 0.0)))
+    return box((0.7, 0.7, 0.7), made, place(at=(-0.2, 0.2, 0.0)))
 
 
 def beside_fog() -> None:
