@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // A photon beam meets the camera ray of one pixel (Jarosz et al. 2011, Progressive Photon Beams, eq. 8, with a
 // one-dimensional kernel).
 

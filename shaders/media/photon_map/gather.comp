@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
 // media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
 // the surface where they begin, and straight camera rays in thin media to photon beams.

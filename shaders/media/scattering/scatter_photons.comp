@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // Photons in media: some of them are scattered before they come to a surface. They are stored there, and go on in a
 // direction of the phase function; the stages of surfaces leave them alone in this segment.
 
