@@ -32,13 +32,13 @@ def _sum(net: Net, *parts: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
     return total
 
 
-def absorbing_cube() -> None:
+def absorbing_cube() -> bpy.types.Object:
     """A turned cube that absorbs and shines."""
     _room()
     made, net = material("Glow")
     absorbing = net.out("VolumeAbsorption", inputs={"Color": (0.3, 0.6, 0.8), "Density": 0.8})
     net.output(Volume=_sum(net, absorbing, _emission(net, (1.0, 0.6, 0.3), 1.5)))
-    box((0.5, 0.3, 0.7), made, place(at=(-0.3, 0.2, 0.0), turn=(20.0, 35.0, 10.0)))
+    return box((0.5, 0.3, 0.7), made, place(at=(-0.3, 0.2, 0.0), turn=(20.0, 35.0, 10.0)))
 
 
 def scattering_cube() -> bpy.types.Object:
@@ -134,6 +134,16 @@ def test_a_world_that_scatters_its_own_light(renderer):
     new_scene()
     glowing_world()
     _compare(renderer, "world", 4, tolerance=DISTANT, photons=65536, iterations=16)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("rays", ["camera", "diffuse"])
+def test_glow_that_is_hidden(renderer, rays):
+    """Rays do not enter a volume that is hidden from them: the camera sees what it shines on, or no surface takes its
+    light."""
+    new_scene()
+    setattr(absorbing_cube(), f"visible_{rays}", False)
+    _compare(renderer, f"hidden_from_{rays}", 4)
 
 
 @pytest.mark.long
