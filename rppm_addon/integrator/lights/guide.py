@@ -44,7 +44,8 @@ FINEST_CELLS = {
     LightShape.WORLD: (16, 16, 16, 16),
     LightShape.MEDIUM: (16, 1, 32, 32),
 }
-"""Cells along the place on the light and the direction, by kind; for MESH the first is the triangle, and for MEDIUM the voxel."""
+"""Cells along the place on the light and the direction, by kind; for MESH the first is the triangle, for MEDIUM the
+voxel."""
 
 
 def cells_of(kind: int, photons: int) -> tuple[int, ...]:

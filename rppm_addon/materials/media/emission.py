@@ -39,10 +39,10 @@ Constants("EmissionPlaces", AROUND_EVERYTHING=WORLD)
 StorageBlock("EmissiveMedia", "EmissiveMedium emissive_media[];")
 
 _FREE_PATHS, _SCENES = 12.0, 8.0
-"""Margin around the scene from which photons of the world's medium leave: longest mean free paths, but not more than so many
-times the scene's diagonal."""
+"""Margin around the scene from which photons of the world's medium leave: longest mean free paths, but not more than so
+many times the scene's diagonal."""
 _BOXES = 6
-"""Boxes of the world's medium, from that around the scene to the largest: what is far from the scene seldom lights it."""
+"""Boxes of the world's medium, from that around the scene to the largest: light from far away seldom comes to it."""
 _LEAST_FILL = 0.02
 """Least part of its box that a medium is taken to fill, where its mesh has holes or turns inside out."""
 

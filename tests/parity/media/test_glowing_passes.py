@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Passes of a medium that emits light beside Cycles' of the same name."""
 
-import bpy
 import numpy as np
 import pytest
 
