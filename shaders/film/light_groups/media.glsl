@@ -17,8 +17,8 @@ vec3 emission_of_medium(uint medium, uint flags, Ray ray, float distance) {
     return media[medium].emission * mix(seen, vec3(0.0), greaterThan(seen, vec3(1e20)));
 }
 
-// All that a final gather finds but for light of surfaces and photons counts for the group of the world: what media emit
-// is taken from it.
+// All that a final gather finds but for light of surfaces and photons counts for the world's group: what media emit is
+// taken from it.
 void add_emission_of_media(uint index, CameraPath path, Ray ray, float distance) {
     bool gathers = (path.flags & PATH_FINAL_GATHER) != 0u, world = true;
     uint bits = medium_bits(), set = path.flags >> FIRST_MEDIUM;
