@@ -93,7 +93,7 @@ def graded(slope: float, offset: float) -> Material:
     return Material("graded", fog.fog(0.0).graph, graph)
 
 
-@pytest.mark.parametrize("mesh", [scenes.box("box"), BALL], ids=["box", "ball"])
+@pytest.mark.parametrize("mesh", [pytest.param(scenes.box("box"), marks=pytest.mark.long), BALL], ids=["box", "ball"])
 def test_flux_of_a_medium_that_varies(renderer, mesh):
     turned = scenes.placed(0.3, 0.2, 0.1, 0.5) @ np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
     flux = flux_of(renderer, (mesh, graded(1.0, 1.0), turned))
