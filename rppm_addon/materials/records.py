@@ -37,8 +37,8 @@ MEDIUM = Record(
     first_word="uint",
     material_medium="uint",
     medium_bits="uint",
-    unused0="uint",
-    unused1="uint",
+    light_group="uint",
+    unused="uint",
 )
 """A participating medium: its absorption and scattering coefficients, 1/m, the radiance that it emits by length,
 W/(m^3 sr), and the place of its phase functions in PhaseFunctions. Where these vary, they are scales of channels of a
@@ -46,7 +46,8 @@ grid of ``voxels`` (0 without one): the channels of the three (bricks.py), a byt
 matrix from the world to the grid, in which voxel i reaches from i to i + 1; and where its table of bricks begins in
 MediumVoxels. ``material_medium`` is not of this medium: item n has that of material n, as the record Material; programs
 with many storage blocks then need no block Materials. ``medium_bits`` is the number of bits that a medium's number
-takes in a path's flags, the same in every item."""
+takes in a path's flags, the same in every item. ``light_group`` is the number of the group of what it emits, plus one;
+0 for none."""
 StorageBlock("Media", "Medium media[];")
 
 

@@ -11,7 +11,8 @@
 // 1 in a medium and 0 on a surface.
 bool exceeds_depth(uint camera_depth, uint photon_number, uint medium_vertices) {
 #ifdef MEDIA
-    if (!within_volume_bounces(photons[photon_number].bounce_counts, photons[photon_number].flags, medium_vertices))
+    if (!within_volume_bounces(photons[photon_number].bounce_counts, photons[photon_number].flags,
+                               photons[photon_number].depth, medium_vertices))
         return true;
 #endif
     uint depth = camera_depth + (photons[photon_number].depth & DEPTH_MASK);

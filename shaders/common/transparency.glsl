@@ -14,3 +14,6 @@ bool counts_as_transparent(Closure closure) {
 bool may_pass(Closure closure, uint depth, uint limit) {
     return transparents_of(depth) < limit || !counts_as_transparent(closure);
 }
+
+// Whether a path that passes through a surface comes into or out of its medium. It leaves that of a hidden object too.
+bool may_cross(Closure closure) { return (closure.flags & CLOSURE_UNSEEN) == 0u || closure_backfacing(closure); }

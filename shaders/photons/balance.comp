@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #include <Dispatch>
 #include "common/invocation.glsl"
 uniform Parameters { BalanceParameters parameters; };
-readonly buffer Emitted { PhotonPath emitted[]; };
+readonly buffer Emitted;
 readonly buffer PhotonPaths;
 writeonly buffer Sums { FluxSums sums[]; };
 

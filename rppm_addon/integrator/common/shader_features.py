@@ -25,6 +25,8 @@ class ShaderFeatures:
     """Whether volumes fill the world or the inside of surfaces."""
     has_heterogeneous_media: bool = False
     """Whether any of these varies from place to place, or from object to object."""
+    has_emissive_media: bool = False
+    """Whether volumes emit light."""
     counts_bounces: bool = False
     """Whether bounces are counted by type."""
     drops_caustics: bool = False
@@ -37,12 +39,14 @@ class ShaderFeatures:
         """Return the features of a scene, and those that a viewport demands."""
         volumes = [(scene.world.volume, False)]
         volumes += [(material.interior, material.reads_grids) for material in scene.materials]
+        interiors = [Interior.of(volume, reads_grids) for volume, reads_grids in volumes]
         return cls(
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
             demands.has_ashikhmin or any(has_ashikhmin(material.graph) for material in scene.materials),
             any(light.is_portal for light in scene.lights),
             any(volume is not None for volume, _ in volumes),
-            any(Interior.of(volume, reads_grids).varies for volume, reads_grids in volumes),
+            any(interior.varies for interior in interiors),
+            any(interior.emission is not None for interior in interiors),
             scene.settings.limits_bounces_by_type
             or any(asks_for_bounces_by_type(material.graph) for material in scene.materials),
             scene.settings.dropped_caustics != 0,
@@ -58,6 +62,7 @@ class ShaderFeatures:
             "PORTALS": self.has_portals,
             "MEDIA": self.has_media,
             "HETEROGENEOUS_MEDIA": self.has_heterogeneous_media,
+            "EMISSIVE_MEDIA": self.has_emissive_media,
             "COUNTS_BOUNCES": self.counts_bounces,
             "DROPS_CAUSTICS": self.drops_caustics,
             "CLAMPS_LIGHT": self.clamps_light,

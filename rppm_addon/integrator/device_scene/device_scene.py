@@ -13,7 +13,7 @@ from ...gl.programs.bindings import ITERATION
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
-from ...scene.meshes import Mesh
+from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure
 from ..common.iteration import Iteration
@@ -184,6 +184,7 @@ class DeviceScene:
                     self._warn_of_media(scene)
         self.resolve.set_view(scene)
         if changes.geometry or changes.materials or changes.lights:
+            self.materials.media.list_emissive(scene, *self._placed_and_bounds)
             with self._collect_warnings("lights"):
                 self.lights.build(
                     scene,
@@ -199,20 +200,22 @@ class DeviceScene:
             self.lights.begin(photons)
 
     def _bake_media(self, scene: Scene) -> None:
+        blocks = {**self.geometry.blocks, **self.resolve.blocks}
+        self.materials.bake_media(scene, *self._placed_and_bounds, blocks)
+
+    @property
+    def _placed_and_bounds(self) -> tuple[list[Instance], tuple[np.ndarray, np.ndarray]]:
+        """The instances that have triangles, and the bounds of the scene, low and high, (3,) each."""
         geometry = self.geometry
         placed = [placement.instance for placement in geometry.placements]
-        bounds = geometry.bounds_low, geometry.bounds_high
-        self.materials.bake_media(scene, placed, bounds, {**geometry.blocks, **self.resolve.blocks})
+        return placed, (geometry.bounds_low, geometry.bounds_high)
 
     def _warn_of_media(self, scene: Scene) -> None:
-        """Warn of media of which it is not clear where they are, or whose light is lost."""
+        """Warn of media of which it is not clear where they are, or what shines on them."""
         if not self.materials.media.materials:
             return
         warn_of_open_bodies(scene, self.materials.media.materials, self._checked_bodies)
         self._warn_of_linked_media(scene)
-        settings = scene.settings
-        if self.materials.media.emit and not (settings.use_final_gather and settings.camera_bounces > 0):
-            scene.warn("Volumes that emit light shine on surfaces by Final Gather only, which is off")
 
     def _warn_of_linked_media(self, scene: Scene) -> None:
         media = self.materials.media

@@ -42,8 +42,10 @@ FINEST_CELLS = {
     LightShape.ELLIPSE: (8, 8, 16, 16),
     LightShape.MESH: (16, 1, 32, 32),
     LightShape.WORLD: (16, 16, 16, 16),
+    LightShape.MEDIUM: (16, 1, 32, 32),
 }
-"""Cells along the place on the light and the direction, by kind; for MESH the first is the triangle."""
+"""Cells along the place on the light and the direction, by kind; for MESH the first is the triangle, for MEDIUM the
+voxel."""
 
 
 def cells_of(kind: int, photons: int) -> tuple[int, ...]:

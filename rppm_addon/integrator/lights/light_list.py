@@ -3,28 +3,31 @@
 
 import logging
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from ...materials.media.emission import EmissiveMedium
+from ...materials.media.voxel_evaluation import WORLD
 from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
-from ..surfaces.geometry import Geometry
+from ..surfaces.geometry import Geometry, Placement
 from .environment import Environment
 from .light_entry import light_entry
 from .light_links import LightLinkTable
 from .light_maps import LightMaps
 from .light_records import LIGHT, LightFlag, LightShape
 from .portals import is_portal
-from .sources import ENVIRONMENT, SURFACES, source_name
+from .sources import ENVIRONMENT, SURFACES, VOLUMES, source_name
 from .spheres import holds_surfaces
 
 log = logging.getLogger(__name__)
 
 
 class LightList:
-    """Lights that emit, in the order of their numbers: light objects, emissive surfaces, the world, portals.
+    """Lights that emit, in the order of their numbers: light objects, emissive surfaces and media, the world, portals.
 
     ``links`` numbers what they illuminate and what blocks their light.
     """
@@ -70,6 +73,18 @@ class LightList:
         record["max_bounces"] = UNLIMITED_BOUNCES
         self._add(SURFACES, record, power)
 
+    def add_media(self, scene: Scene, media: Sequence[EmissiveMedium], placements: Sequence[Placement]) -> None:
+        """Add media that emit light, each as a light of its own. placements: what their numbers of instances mean."""
+        for number, medium in enumerate(media):
+            record = LIGHT.zeros(1)[0]
+            record["position"], record["axis_u"], record["axis_v"], record["normal"] = medium.frame
+            record["kind"], record["strength"], record["emissive_medium"] = LightShape.MEDIUM, medium.strength, number
+            record["max_bounces"] = UNLIMITED_BOUNCES
+            placed = None if medium.instance == WORLD else placements[medium.instance].instance
+            record["flags"] = int(RayVisibility.ALL if placed is None else placed.visibility)
+            group = scene.world.light_group if placed is None else placed.light_group
+            self._add(VOLUMES, record, medium.power, group=group)
+
     def add_world(self, scene: Scene, environment: Environment, radius: float) -> None:
         """Add the world. radius: that of the scene, meters."""
         record = self._world_record(scene, environment)
@@ -87,7 +102,8 @@ class LightList:
         self.powers[-1] = 0.0
 
     def complete(self, scene: Scene, environment: Environment) -> None:
-        """Check the list. Without any light a black world is added, with a warning in the log.
+        """Check the list. Where nothing but media emits light, a black world is added, and where nothing does at all
+        there is a warning in the log.
 
         Raises SceneError when all lights have a photon weight of 0.
         """
@@ -96,16 +112,27 @@ class LightList:
             log.warning("nothing in the scene emits light; add a light, or give a material or the world some emission")
             self._records.append(self._world_record(scene, environment))
             self.powers, self.weights, self.groups = [1.0], [1.0], [""]
+        elif not self._is_chosen.any():
+            self._records.append(self._world_record(scene, environment))
+            self.powers, self.weights, self.groups = [*self.powers, 0.0], [*self.weights, 0.0], [*self.groups, ""]
         if sum(self.weights) <= 0:
             raise SceneError("all lights have a photon weight of 0; raise that of one")
+
+    @property
+    def _is_chosen(self) -> np.ndarray:
+        """(n,) which lights shadow rays go to."""
+        return np.array([record["kind"] != LightShape.MEDIUM for record in self._records])
 
     @property
     def selection(self) -> np.ndarray:
         """(n,) float64 probabilities of choosing each light where no point is known, and for MIS weights: by power,
         half of it evenly."""
-        powers = np.array(self.powers)
+        chosen = self._is_chosen
+        powers = np.where(chosen, self.powers, 0.0)
         shining = powers > 0
-        return np.where(shining, 0.5 * powers / sum(self.powers) + 0.5 / shining.sum(), 0.0)
+        if not shining.any():
+            return chosen / chosen.sum()
+        return np.where(shining, 0.5 * powers / sum(powers.tolist()) + 0.5 / shining.sum(), 0.0)
 
     @property
     def table(self) -> np.ndarray:

@@ -15,7 +15,8 @@ StorageBlock("LightGroupTable", "uint light_group_table[];")
 
 
 class LightShape(enum.IntEnum):
-    """Kinds of lights on the device: the emissive meshes are one, and so is the world."""
+    """Kinds of lights on the device: the emissive meshes are one, and so is the world. Nothing but photons comes from
+    media: rays find what these emit along their way."""
 
     POINT = 0
     SPOT = 1
@@ -24,6 +25,7 @@ class LightShape(enum.IntEnum):
     ELLIPSE = 4
     MESH = 5
     WORLD = 6
+    MEDIUM = 7
 
 
 class EmitterTrait(enum.IntFlag):
@@ -84,6 +86,7 @@ LIGHT = Record(
     map="vec4",
     link="uint",
     max_bounces="uint",
+    emissive_medium="uint",
 )
 """A light as integrator/lights/light_entry.py lays it out: ``axis_u`` and ``axis_v`` are half extents (AREA) or
 unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with the distance,
@@ -91,7 +94,8 @@ unit axes, ``falloff`` and ``smoothing`` how Light Falloff nodes change it with 
 ``first_cell`` those of lights/guide.py; ``map`` where its map lies among the lights' maps, left, bottom, width
 and height from 0 to 1, ``map_shape`` what the map is of (materials/evaluation.py), 0 without one, and
 ``map_extent`` the tangent of half of what a cone's map shows, ``link`` its LightLink,
-``max_bounces`` PhotonOrigin's."""
+``max_bounces`` PhotonOrigin's. Of a medium, which is the number ``emissive_medium`` of the EmissiveMedia, ``position``,
+``axis_u``, ``axis_v`` and ``normal`` are its EmissiveMedium.frame, and ``strength`` is that of the same."""
 EMISSIVE_TRIANGLE = Record(
     "EmissiveTriangle",
     radiance="vec3",

@@ -71,7 +71,8 @@ LIGHT_TREE_PARAMETERS = {
 
 def light_leaves(lights: np.ndarray) -> np.ndarray:
     """Leaves of the light objects that are somewhere: what they give at most in W/sr, by where and which way."""
-    members = np.nonzero(~np.isin(lights["kind"], (LightShape.SUN, LightShape.MESH, LightShape.WORLD)))[0]
+    elsewhere = LightShape.SUN, LightShape.MESH, LightShape.WORLD, LightShape.MEDIUM
+    members = np.nonzero(~np.isin(lights["kind"], elsewhere))[0]
     lights = lights[members]
     leaves = LIGHT_NODE.zeros(len(lights))
     leaves["member"] = members

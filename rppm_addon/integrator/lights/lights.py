@@ -181,6 +181,7 @@ class Lights(BufferSet):
         )
         self.emitters.build(scene, geometry, materials, resolve, lights.links)
         lights.add_surfaces(self.emitters.power)
+        lights.add_media(scene, materials.media.emissive.listed, geometry.placements)
         if not keep_world:
             self.environment.build(scene.world, scene.images, materials)
         self.world_visibility = scene.world.visibility

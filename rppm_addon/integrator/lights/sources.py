@@ -4,11 +4,12 @@
 import numpy as np
 
 SURFACES = "Emissive surfaces"
+VOLUMES = "Emissive volumes"
 ENVIRONMENT = "World"
 
 
 def source_name(light: str) -> str:
-    """Return the source name of a light object, which is never that of the surfaces or the world."""
+    """Return the source name of a light object, which is never that of the surfaces, the volumes or the world."""
     return f'Light "{light}"'
 
 

@@ -46,6 +46,7 @@ class Media(Stage):
         super().__init__(context, library, sizes)
         self._library = library
         self._has_texels = sizes.has_texels
+        self._defines = {"MEDIA": 1} | ({"EMISSIVE_MEDIA": 1} if sizes.features.has_emissive_media else {})
         self._scene: Scene | None = None
         self._box_count = 0
         self.volume = 0.0
@@ -94,7 +95,7 @@ class Media(Stage):
         active.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
 
     def _compile(self, kernel: str, context: StageContext) -> ComputeProgram:
-        return self._library.compute(kernel, {**context.acceleration.traversal_defines, "MEDIA": 1})
+        return self._library.compute(kernel, context.acceleration.traversal_defines | self._defines)
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))

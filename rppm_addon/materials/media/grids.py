@@ -15,6 +15,7 @@ from ...scene.volumes import Volume
 from ..records import MEDIUM, PHASE_FUNCTION
 from ..traits.interiors import Evaluate, Interior, Variation
 from .bricks import BrickGrid, Lattice, brick_grid, usable
+from .emission_cells import EmissionCells
 
 VOXELS_ALONG = 128
 """Voxels along the longest side of a grid whose object says nothing of its own."""
@@ -85,6 +86,8 @@ class BakedMedium:
     grid: BrickGrid
     functions: np.ndarray
     """(n,) PHASE_FUNCTION, with the means of the scattering coefficients."""
+    emission_cells: EmissionCells | None
+    """Voxels that shine."""
 
     def record(self, placed: PlacedMedium, first_word: int) -> np.void:
         """The MEDIUM record of a medium with these coefficients, whose words begin at ``first_word``."""
@@ -134,6 +137,10 @@ class MediumGrids(BufferSet):
             self._bake_all(media, most, evaluate, evaluate_once)
         return self._upload(media)
 
+    def baked(self, placed: PlacedMedium) -> BakedMedium | None:
+        """Return a medium of the last bake; None for one without a place."""
+        return self._baked.get(placed.key)
+
     @property
     def _word_count(self) -> int:
         return sum(len(baked.grid.words) for baked in self._baked.values())
@@ -179,5 +186,7 @@ def _baked(placed: PlacedMedium, lattice: Lattice, evaluate: EvaluateVoxels, eva
         function["scattering"] = values.mean(axis=(0, 1), dtype=np.float64)
         function["kind"], function["parameters"] = part.kind, part.parameters(evaluate_once)
         scattering = values if scattering is None else scattering + values
-    coefficients = coefficient(interior.absorption), scattering, coefficient(interior.emission)
-    return BakedMedium(placed.source, lattice, brick_grid(coefficients), functions)
+    emission = coefficient(interior.emission)
+    cells = None if emission is None else EmissionCells.of(emission, lattice)
+    grid = brick_grid((coefficient(interior.absorption), scattering, emission))
+    return BakedMedium(placed.source, lattice, grid, functions, cells)

@@ -8,11 +8,14 @@ import numpy as np
 from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
+from ...scene.meshes import Instance
 from ...scene.scene import Scene
 from ..records import MATERIAL, MAX_MEDIA, MEDIUM, PHASE_FUNCTION
 from ..traits.interiors import Evaluate, Interior, Variation
+from .emission import EmissiveMedia
 from .grids import EvaluateVoxels, MediumGrids, PlacedMedium
 from .places import MediumPlaces
+from .voxel_evaluation import WORLD
 
 _Medium = tuple[np.void, np.ndarray]
 """A MEDIUM record, and its (n,) PHASE_FUNCTION records."""
@@ -29,6 +32,7 @@ class MediaTables(BufferSet):
     _media = StorageBuffer("media", MEDIUM, block="Media")
     _phase_functions = StorageBuffer("phase functions", PHASE_FUNCTION, block="PhaseFunctions")
     _grids = Part(MediumGrids)
+    emissive = Part(EmissiveMedia)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -43,6 +47,8 @@ class MediaTables(BufferSet):
         self.places = MediumPlaces({}, None, 0)
         """Media that vary."""
         self._records, self._material_count = MATERIAL.zeros(1), 1
+        self._table = MEDIUM.zeros(1)
+        self._varying: list[PlacedMedium] = []
         self._even: list[_Medium] = []
         """The world's medium, and those that are the same everywhere."""
 
@@ -64,7 +70,7 @@ class MediaTables(BufferSet):
         varying = {index: interior for index, interior in enumerate(interiors) if interior.varies}
         self.places = MediumPlaces(varying, world if world_varies else None, len(filled))
         self.materials = frozenset(filled) | frozenset(varying)
-        self._records, self._material_count = records, len(records)
+        self._records, self._material_count, self._varying = records, len(records), []
         self._upload(self._even)
 
     def place(self, scene: Scene) -> np.ndarray:
@@ -76,9 +82,52 @@ class MediaTables(BufferSet):
         self, scene: Scene, media: Sequence[PlacedMedium], evaluate: EvaluateVoxels, evaluate_once: Evaluate
     ) -> None:
         """Bake and upload the media that vary: those of ``places``, the world's behind them."""
-        baked = self._grids.bake(scene, list(media), evaluate, evaluate_once)
+        self._varying = list(media)
+        baked = self._grids.bake(scene, self._varying, evaluate, evaluate_once)
         world = self._even[0] if self.places.world is None else baked.pop()
         self._upload([world, *self._even[1:], *baked])
+
+    def list_emissive(self, scene: Scene, placed: Sequence[Instance], bounds: tuple[np.ndarray, np.ndarray]) -> None:
+        """List the media that emit light, after ``bake``, and their light groups.
+
+        placed: the instances of the scene that have triangles; bounds: of the scene, (3,) each.
+        """
+        self.emissive.clear()
+        if not self.emit:
+            return
+        groups = {name: number for number, name in enumerate(scene.settings.light_groups, 1)}
+        self._table["light_group"][0] = groups.get(scene.world.light_group, 0)
+        world = self._even[0][0]
+        if world["emission"].any():
+            self.emissive.add_world(scene, bounds, world)
+        for number, instance in enumerate(placed):
+            for medium in self._even_media(instance):
+                self._table["light_group"][medium] = groups.get(instance.light_group, 0)
+                self.emissive.add_even(scene, instance, number, medium, self._even[medium][0]["emission"])
+        for medium, varying in enumerate(self._varying, len(self._even)):
+            baked, to_object = self._grids.baked(varying), varying.to_object
+            if baked is None or baked.emission_cells is None or to_object is None:
+                continue
+            to_grid = baked.lattice.to_grid @ to_object
+            if varying.instance == WORLD:
+                self.emissive.add_grid(scene, varying, None, 0, to_grid, baked.emission_cells)
+                continue
+            instance = placed[varying.instance]
+            self._table["light_group"][medium] = groups.get(instance.light_group, 0)
+            self.emissive.add_grid(scene, varying, instance, medium, to_grid, baked.emission_cells)
+        self.emissive.upload()
+        if groups:
+            self._media.upload(self._table)
+
+    def _even_media(self, instance: Instance) -> list[int]:
+        """Media within an instance that emit light and are the same everywhere, by number."""
+        known = {material for material in instance.materials if 0 <= material < self._material_count}
+        media = {int(self._records["medium"][material]) for material in known}
+        return [
+            medium
+            for medium in sorted(media)
+            if 0 < medium < len(self._even) and self._even[medium][0]["emission"].any()
+        ]
 
     def _upload(self, listed: list[_Medium]) -> None:
         first = 0
@@ -89,6 +138,7 @@ class MediaTables(BufferSet):
         media[: len(listed)] = [record for record, _ in listed]
         media["material_medium"][: len(self._records)] = self._records["medium"]
         media["medium_bits"] = max(int(self._records["medium"].max()).bit_length(), 1)
+        self._table = media
         self._media.upload(media)
         self._phase_functions.upload(np.concatenate([functions for _, functions in listed] + [PHASE_FUNCTION.zeros(1)]))
         self.emit = any(record["emission"].any() for record, _ in listed)

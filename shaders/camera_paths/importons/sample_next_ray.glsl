@@ -53,7 +53,7 @@ void spawn_ray(SurfaceVertex vertex, BsdfSample bsdf) {
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     float side = dot(bsdf.direction, geometric);
     if (!(largest(vertex.path.throughput) > 0.0) || (bsdf.transmitted ? side >= 0.0 : side <= 0.0)) return;
-    if (bsdf.transmitted)
+    if (bsdf.transmitted && may_cross(closure))
         vertex.path.flags = cross_surface(vertex.path.flags, closure.material, closure_backfacing(closure));
     camera_paths[vertex.index] = vertex.path;
     float offset = closures[vertex.index].ray_offset;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // Each importon gathers the photons around it and adds them to its sums, which no other thread touches meanwhile.
 // A visit is an importon's number and how many photons of its buckets it has looked at before: a thread that comes to
 // the end of its rounds leaves the rest to another visit.

@@ -8,7 +8,10 @@ buffer LightSums;
 buffer GroupSums;
 
 // Whether a surface or a medium has scattered a photon on its way from the light.
-bool is_indirect(uint photon_flags, uint bounce_counts) {
+bool is_indirect(uint photon_flags, uint bounce_counts, uint depth) {
+#ifdef EMISSIVE_MEDIA
+    if (bounces_of(depth) == 0u) return false;  // photons of media begin as if they were indirect
+#endif
     return (photon_flags & (PHOTON_SCATTERED_BY_LOBE | PHOTON_INDIRECT)) != 0u || medium_count(bounce_counts) > 0u;
 }
 

@@ -24,7 +24,8 @@ LightPart light_part(uint part, Importon importon, uint photon, uint photon_flag
         if (is_caustic || (history & HISTORY_DIFFUSE) != 0u) caustic += lobe;
         return LightPart(final_gather ? FINAL_GATHER_CAUSTICS : CAUSTICS_SUM, caustic);
     }
-    bool indirect = is_indirect(photon_flags, photons[photon].bounce_counts), of_diffuse = part == 0u;
+    bool indirect = is_indirect(photon_flags, photons[photon].bounce_counts, photons[photon].depth),
+         of_diffuse = part == 0u;
     if (final_gather) return LightPart(0u, vec3(0.0));
     if (first != SCATTER_NONE) return LightPart(scattered_sum(first, true), of_diffuse ? estimate.radiance : vec3(0.0));
     if (of_diffuse) return LightPart(scattered_sum(SCATTER_DIFFUSE, indirect), diffuse);

@@ -3,9 +3,11 @@
 // lint:
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1 EMISSIVE_MEDIA=1
 // Adds the light objects that the rays of camera paths intersect to their groups, before the paths are scattered. All
-// other emission at the end of a ray is of one group: emission.comp adds the radiance beyond what is kept here. What
-// media along the ray emit is of no group.
+// other emission at the end of a ray is of one group: emission.comp adds the radiance beyond what is kept here. Media
+// along the ray have groups of their own.
 
 layout(local_size_x = 64) in;
 
@@ -29,6 +31,10 @@ readonly buffer FinalGatherHits;
 readonly buffer Media;
 #include "materials/medium.glsl"
 
+#ifdef EMISSIVE_MEDIA
+#include "film/light_groups/media.glsl"
+#endif
+
 uint path_index;
 vec3 path_throughput;
 void add_intersected_light(uint light, vec3 radiance) {
@@ -48,6 +54,9 @@ void main() {
 #ifdef MEDIA
     if (ray.maximum_distance > 0.0 && !is_final_gather(path))
         ungrouped = path.throughput * segment_emission(path.flags, ray.origin, ray.direction, distance);
+#endif
+#ifdef EMISSIVE_MEDIA
+    if (ray.maximum_distance > 0.0) add_emission_of_media(path_index, path, ray, distance);
 #endif
     if (ray.maximum_distance > 0.0 && path_collects_emission(path) && (path.flags & PATH_LIGHTS_FOUND) == 0u) {
         path_throughput = path.throughput;

@@ -12,7 +12,7 @@ void add_beam(uint pixel, PhotonBeam beam, vec3 radiance) {
     add_radiance_quanta(pixel, false, radiance);
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u) add_to_group_sum(pixel, beam.light_group, false, radiance);
     if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
-        add_to_light_sum(pixel, volume_sum(is_indirect(beam.flags, beam.bounce_counts)), radiance);
+        add_to_light_sum(pixel, volume_sum(is_indirect(beam.flags, beam.bounce_counts, beam.depth)), radiance);
     if ((parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u && (beam.flags & PHOTON_CAUSTIC) != 0u)
         add_to_light_sum(pixel, CAUSTICS_SUM, radiance);
     if (parameters.counting == 0u) return;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // A photon beam meets the camera ray of one pixel (Jarosz et al. 2011, Progressive Photon Beams, eq. 8, with a
 // one-dimensional kernel).
 
@@ -30,7 +31,7 @@ flat in uint beam_number;
 const float LEAST_SINE = 1e-4;
 
 bool exceeds_depth(uint camera_depth, PhotonBeam beam) {
-    if (!within_volume_bounces(beam.bounce_counts, beam.flags, 1u)) return true;
+    if (!within_volume_bounces(beam.bounce_counts, beam.flags, beam.depth, 1u)) return true;
     uint depth = camera_depth + (beam.depth & DEPTH_MASK), most = iteration.max_bounces;
     if (iteration.limits_bounces != 0u) most = min(most, beam.max_bounces);
     return bounces_of(depth) > most || transparents_of(depth) > iteration.transparent_max_bounces;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
 // media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
 // the surface where they begin, and straight camera rays in thin media to photon beams.
@@ -88,7 +89,7 @@ void add_light(uint pixel, uint photon, vec3 radiance) {
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
         add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
     uint flags = photons[photon].flags, first = first_scatter(history);
-    bool indirect = is_indirect(flags, photons[photon].bounce_counts);
+    bool indirect = is_indirect(flags, photons[photon].bounce_counts, photons[photon].depth);
     if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
         add_to_light_sum(pixel, first == SCATTER_NONE ? volume_sum(indirect) : scattered_sum(first, true), radiance);
     bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
 // Photons in media: some of them are scattered before they come to a surface. They are stored there, and go on in a
 // direction of the phase function; the stages of surfaces leave them alone in this segment.
 
@@ -84,9 +85,9 @@ void sample_next_ray(uint index, PhotonPath path, PlaceOnRay at, vec3 weight, ve
     bool survives = next_random(random) < survival;
     uint bounce_counts = medium_counted(path.bounce_counts);
     bool is_first = medium_count(bounce_counts) == 1u;
-    if (is_first && (path.flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u) bounce_counts |= FIRST_MEDIUM_LIT;
+    if (is_first && is_light_direct(path.flags, path.depth)) bounce_counts |= FIRST_MEDIUM_LIT;
     if (bounces_of(path.depth) >= iteration.photon_bounces
-        || !within_volume_bounces(bounce_counts, PHOTON_AFTER_ROUGH_BOUNCE, 0u)) {
+        || !within_volume_bounces(bounce_counts, PHOTON_AFTER_ROUGH_BOUNCE, path.depth, 0u)) {
         photon_paths[index].deposited = path.flux.x + path.flux.y + path.flux.z;
         survives = false;
     }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: PORTALS=1
+// lint: MEDIA=1 EMISSIVE_MEDIA=1
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1 EMISSIVE_MEDIA=1
 // DirectPhotonHits, first half: photons leave the lights (paper section 4.3).
 
 layout(local_size_x = 64) in;
@@ -34,7 +36,7 @@ float light_extent(Light light) {
 PhotonDifferential leaving_differential(Light light, Emission emission, float before) {
     bool parallel = light.kind == LIGHT_SUN;
     if (parallel || light.kind == LIGHT_WORLD) before = INFINITY_DISTANCE;
-    bool known = emission.pdf > 0.0 && light.kind != LIGHT_WORLD && light.kind != LIGHT_MESH;
+    bool known = emission.pdf > 0.0 && light.kind != LIGHT_WORLD && !has_part(light);
     vec3 t, b;
     tangent_frame(emission.direction, t, b);
     float apart = known ? inversesqrt(emission.pdf * float(light.photon_count)) : 0.0, extent = light_extent(light);
@@ -83,9 +85,9 @@ void main() {
         // Evenly spaced from a random start: each cell gets its part but for one photon.
         uint step = 0xffffffffu / max(light.photon_count - aimed_photons(light), 1u);
         uint cell = choose_guide_cell(light, seed.x + within * step + pcg4d(seed + within).y % step);
-        vec2 place = light.kind == LIGHT_MESH ? vec2(choice.part, 0.0) : choice.place;
+        vec2 place = has_part(light) ? vec2(choice.part, 0.0) : choice.place;
         place_in_cell(light, cell, place, choice.direction);
-        if (light.kind == LIGHT_MESH) choice.part = place.x;
+        if (has_part(light)) choice.part = place.x;
         else choice.place = place;
         photon_cells[index] = light.first_cell + cell;
     }
@@ -96,6 +98,12 @@ void main() {
                       | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)
                       | ((light.flags & RAY_TRANSMISSION) == 0u ? PHOTON_NOT_TRANSMITTED : 0u)
                       | (light.kind != LIGHT_WORLD ? PHOTON_CASTS_SHADOWS : 0u);
+#ifdef EMISSIVE_MEDIA
+    // The light of media is found by the rays of final gathers, and not by shadow rays.
+    if (light.kind == LIGHT_MEDIUM)
+        path_flags =
+            (path_flags & ~(PHOTON_DIRECT | PHOTON_CASTS_SHADOWS)) | PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT;
+#endif
     photon_origins[index] = PhotonOrigin(0.0, 0.0, light.max_bounces, NO_LIGHT_GROUP);
     if (light.kind == LIGHT_WORLD)
         photon_origins[index] =
@@ -104,7 +112,11 @@ void main() {
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0,
                                      is_hidden_from_media(light, emission) ? HIDDEN_FROM_MEDIA : 0u);
     vec3 left_from = emission.origin;
+#ifdef EMISSIVE_MEDIA
+    bool traced = !dark && (light.kind == LIGHT_MEDIUM || enter_scene(emission.origin, emission.direction));
+#else
     bool traced = !dark && enter_scene(emission.origin, emission.direction);
+#endif
     float before = distance(left_from, emission.origin);
     photon_differentials[index] = leaving_differential(light, emission, before);
     if (emission.reach < INFINITY_DISTANCE) emission.reach = max(emission.reach - before, 0.0);

@@ -123,11 +123,25 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
 #ifdef PORTALS
 #include "photons/photon_emission/portals.glsl"
 #endif
+#ifdef EMISSIVE_MEDIA
+#include "photons/photon_emission/media.glsl"
+#endif
+
+// Whether one number chooses the place from which a photon leaves: of an emissive triangle, or in a medium.
+bool has_part(Light light) {
+#ifdef EMISSIVE_MEDIA
+    if (light.kind == LIGHT_MEDIUM) return true;
+#endif
+    return light.kind == LIGHT_MESH;
+}
 
 Emission emit_plain_photon(Light light, EmissionChoice choice) {
     if (light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT) return emit_from_point(light, choice);
 #ifdef PORTALS
     if (light.kind == LIGHT_WORLD) return emit_from_world(light, choice);
+#endif
+#ifdef EMISSIVE_MEDIA
+    if (light.kind == LIGHT_MEDIUM) return emit_from_medium(light, choice);
 #endif
     if (light.kind == LIGHT_SUN || light.kind == LIGHT_WORLD) {
         vec3 direction, flux_density = light.strength;

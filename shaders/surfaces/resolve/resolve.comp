@@ -158,6 +158,7 @@ void let_light_pass(Surface surface, ShadingInstance instance, uint flags, bool 
     if (passes || (builder.closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) builder.closure.transparent = vec3(1.0);
     else if (opaque) builder.closure.transparent = vec3(0.0);
     if (passes) builder.closure.flags |= CLOSURE_ABSENT;
+    if (unseen) builder.closure.flags |= CLOSURE_UNSEEN;
     if (keeps_light) builder.closure.flags |= CLOSURE_KEEPS_LIGHT;
     // Shadow rays bring light through what is transparent, and photons and paths leave it to them.
     bool leaves_direct_light =

@@ -56,7 +56,15 @@ with the objects that use it. Nodes are named likewise; the remarks further down
 """
 VOLUMES = (
     ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it"),
-    ("Light of a volume that more than one diffuse surface scatters", "left out"),
+    (
+        "A volume of the world that emits and scatters light",
+        "its light comes from within 12 mean free paths of the scene, at most from 8 times its diagonal, with more "
+        "noise than Cycles'",
+    ),
+    (
+        "Light groups of objects that share a material whose volume emits light",
+        "what camera rays and final gathers find of it counts for the group of one of them",
+    ),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
     (
         "Light Linking of what has a volume that scatters",

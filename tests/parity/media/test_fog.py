@@ -112,7 +112,6 @@ def test_nodes(renderer, nodes, request):
 
 
 @pytest.mark.long
-@pytest.mark.xfail(strict=True, reason="media do not scatter the light that they emit")
 def test_emission(renderer):
     _seen_with(_scatter(0.6, 0.0, (0.5, 0.8, 0.9)), ("Emission", {"Color": (1.0, 0.6, 0.3), "Strength": 0.2}, {}))
     _compare(renderer, "emission", 4)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import bpy
 from bpy.app.translations import pgettext_iface as iface_
 
-from ....integrator.lights.sources import ENVIRONMENT, SURFACES, source_name
+from ....integrator.lights.sources import ENVIRONMENT, SURFACES, VOLUMES, source_name
 from ....session.render.results import PhotonStatistics
 from ...readings import photon_allocation
 from ...reports import reports_of
@@ -50,7 +50,7 @@ def source_rows(scene: bpy.types.Scene) -> list[SourceRow]:
         allocation = photon_allocation(statistics.source_watts, weights)
         emitted = max(sum(statistics.source_photons.values()), 1)
         for name in statistics.source_watts:
-            icon = {SURFACES: "MATERIAL", ENVIRONMENT: "WORLD"}.get(name, "LIGHT")
+            icon = {SURFACES: "MATERIAL", VOLUMES: "VOLUME_DATA", ENVIRONMENT: "WORLD"}.get(name, "LIGHT")
             shown = _object_name(name)
             rows.append(
                 SourceRow(shown, icon, lights[name], allocation[name], statistics.source_photons.get(name, 0) / emitted)
@@ -67,7 +67,7 @@ def _object_name(source: str) -> str:
 
 
 def _light_of(source: str) -> bpy.types.Light | None:
-    found = bpy.data.objects.get(_object_name(source)) if source not in {SURFACES, ENVIRONMENT} else None
+    found = bpy.data.objects.get(_object_name(source)) if source not in {SURFACES, VOLUMES, ENVIRONMENT} else None
     return found.data if found is not None and found.type == "LIGHT" else None
 
 

@@ -83,6 +83,8 @@ class ClosureFlag(enum.IntFlag):
     """The indices of the refracting lobes are those of the path's wavelength."""
     SUBSURFACE = 128
     """Some of the diffuse part goes below the surface."""
+    UNSEEN = 1 << 16
+    """The object is hidden from a camera path, which does not enter its volume either."""
 
 
 LOBE_COUNT_SHIFT = 8

@@ -24,6 +24,8 @@ tell how often lobes of each type have scattered it since the surface that its l
 (shaders/common/bounce_counts.glsl); they are 0 where nobody asks. Their fourth count is
 of vertices in media, with FIRST_MEDIUM_LIT and HIDDEN_FROM_MEDIA."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
+StorageBlock("Emitted", "PhotonPath emitted[];")
+"""Paths as they left their lights."""
 PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint", light_group="uint")
 """The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
 from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
