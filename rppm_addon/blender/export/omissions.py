@@ -50,24 +50,12 @@ OF_OBJECTS = (
 """By what an evaluated object uses."""
 
 
-def _is_spherical_stereo(scene: bpy.types.Scene) -> bool:
-    camera = None if scene.camera is None else scene.camera.data
-    panoramic = scene.render.use_multiview and getattr(camera, "type", "") == "PANO"
-    return panoramic and camera.stereo.use_spherical_stereo
-
-
 OF_SCENES = (
     Omission(
         "Rolling Shutter",
         "all of the picture is exposed at once",
         ("render.use_motion_blur", "cycles.rolling_shutter_type"),
         lambda scene: scene.render.use_motion_blur and _cycles(scene, "rolling_shutter_type", "NONE") != "NONE",
-    ),
-    Omission(
-        "Spherical Stereo",
-        "both eyes look around from where they are",
-        ("render.use_multiview", "camera.data.stereo.use_spherical_stereo"),
-        _is_spherical_stereo,
     ),
     Omission(
         "Transparent Glass",

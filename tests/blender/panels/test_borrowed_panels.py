@@ -61,7 +61,7 @@ COUNTERPARTS = {
 COUNTERPARTS |= {theirs + name: ours + name for (theirs, ours), names in ALIKE.items() for name in names.split()}
 
 EXCLUDED = {
-    "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
+    "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are rendered in perspective",
     "CYCLES_LIGHT_PT_settings": "RPPM_PT_light shows bounces, shadows and portals",
     "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
     "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
