@@ -50,6 +50,11 @@ OF_OBJECTS = (
 """By what an evaluated object uses."""
 
 
+def _has_transparent_glass_of_cycles_only(scene: bpy.types.Scene) -> bool:
+    own = getattr(getattr(scene, "rppm", None), "film_transparent_glass", False)
+    return scene.render.film_transparent and bool(_cycles(scene, "film_transparent_glass", False)) and not own
+
+
 OF_SCENES = (
     Omission(
         "Rolling Shutter",
@@ -59,9 +64,10 @@ OF_SCENES = (
     ),
     Omission(
         "Transparent Glass",
-        "glass is opaque in a transparent film",
+        "on for Cycles only, so that glass is opaque in the transparent film; switch it on in Film, or take all of "
+        "Cycles' settings with Sampling > Advanced > Copy from Cycles",
         ("render.film_transparent", "cycles.film_transparent_glass"),
-        lambda scene: scene.render.film_transparent and bool(_cycles(scene, "film_transparent_glass", False)),
+        _has_transparent_glass_of_cycles_only,
     ),
 )
 """By what a scene uses."""

@@ -33,6 +33,8 @@ class ShaderFeatures:
     """Whether light that paths bring has a limit."""
     has_spherical_stereo: bool = False
     """Whether the camera stands to the side of each direction in which it looks."""
+    has_transparent_glass: bool = False
+    """Whether the film's background shows behind clear glass."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -50,6 +52,7 @@ class ShaderFeatures:
             scene.settings.dropped_caustics != 0,
             scene.settings.sample_clamp_direct > 0.0 or scene.settings.sample_clamp_indirect > 0.0,
             scene.camera.stereo is not None,
+            scene.settings.film_transparent and scene.settings.film_transparent_glass,
         )
 
     @property
@@ -65,5 +68,6 @@ class ShaderFeatures:
             "DROPS_CAUSTICS": self.drops_caustics,
             "CLAMPS_LIGHT": self.clamps_light,
             "SPHERICAL_STEREO": self.has_spherical_stereo,
+            "TRANSPARENT_GLASS": self.has_transparent_glass,
         }
         return {name: 1 for name, has in macros.items() if has}

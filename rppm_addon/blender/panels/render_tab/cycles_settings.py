@@ -28,6 +28,8 @@ SHARED = {
             "sample_clamp_indirect",
             "caustics_reflective",
             "caustics_refractive",
+            "film_transparent_glass",
+            "film_transparent_roughness",
         )
     },
     **{
