@@ -75,7 +75,6 @@ OF_SCENES = (
 
 PASSES = {
     "use_pass_shadow": "Shadow",
-    "use_pass_ambient_occlusion": "Ambient Occlusion",
     "use_pass_subsurface_direct": "Subsurface Direct",
     "use_pass_subsurface_indirect": "Subsurface Indirect",
     "use_pass_subsurface_color": "Subsurface Color",

@@ -104,6 +104,24 @@ class RPPM_PT_world_mist(RppmPanel, bpy.types.Panel):
             column.prop(mist, name)
 
 
+class RPPM_PT_world_ambient_occlusion(RppmPanel, bpy.types.Panel):
+    bl_label = "Ambient Occlusion Pass"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "world"
+    is_decorated = True
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return True where a view layer has the pass, or where it is baked."""
+        if not super().poll(context) or context.world is None:
+            return False
+        scene = context.scene
+        return scene.rppm.bake_type == "AO" or any(layer.use_pass_ambient_occlusion for layer in scene.view_layers)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.world.light_settings, "distance")
+
+
 class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -217,6 +235,7 @@ CLASSES = (
     RPPM_PT_world_surface,
     RPPM_PT_world_volume,
     RPPM_PT_world_mist,
+    RPPM_PT_world_ambient_occlusion,
     RPPM_PT_ray_visibility,
     RPPM_PT_shadow_terminator,
     RPPM_PT_world_ray_visibility,
