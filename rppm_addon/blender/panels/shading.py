@@ -105,18 +105,16 @@ class RPPM_PT_world_mist(RppmPanel, bpy.types.Panel):
 
 
 class RPPM_PT_world_ambient_occlusion(RppmPanel, bpy.types.Panel):
-    bl_label = "Ambient Occlusion Pass"
+    """Distance of the pass, of what is baked, and of nodes that have none of their own."""
+
+    bl_label = "Ambient Occlusion"
     bl_options = {"DEFAULT_CLOSED"}
     bl_context = "world"
     is_decorated = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return True where a view layer has the pass, or where it is baked."""
-        if not super().poll(context) or context.world is None:
-            return False
-        scene = context.scene
-        return scene.rppm.bake_type == "AO" or any(layer.use_pass_ambient_occlusion for layer in scene.view_layers)
+        return super().poll(context) and context.world is not None
 
     def draw(self, context: bpy.types.Context) -> None:
         self.column().prop(context.world.light_settings, "distance")
