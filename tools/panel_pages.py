@@ -175,7 +175,7 @@ def _contexts() -> Iterator[SimpleNamespace]:
     scene = bpy.context.scene
     scene.render.engine = "RPPM"
     scene.world = bpy.data.worlds.new("World")
-    scene.view_layers[0].use_pass_cryptomatte_object = True
+    scene.view_layers[0].use_pass_cryptomatte_object = scene.view_layers[0].use_pass_mist = True
     for name in ("time_limit", "photons", "preview_photons", "radius_minimum", "radius_maximum", "cubemap_resolution"):
         setattr(scene.rppm, name, 1 if name != "cubemap_resolution" else 256)
     scene.rppm.adaptive_min_samples = scene.rppm.preview_adaptive_min_samples = 16

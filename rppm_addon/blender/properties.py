@@ -50,6 +50,7 @@ VIEWPORT_DENOISING = {
     "denoising_input_passes": DenoisingInputPasses.RGB_ALBEDO,
     "denoising_prefilter": DenoisingPrefilter.FAST,
     "denoising_quality": DenoisingQuality.BALANCED,
+    "denoising_use_gpu": False,
     "denoising_start_sample": DEFAULTS.denoising_start_sample,
 }
 VIEWPORT_APART = {**VIEWPORT_SAMPLING, **VIEWPORT_DENOISING}

@@ -27,6 +27,8 @@ class Denoiser:
         """places: libraries in the order in which they are tried."""
         self._places = list(places)
         self._library: OpenImageDenoise | None = None
+        self._on_gpu: OpenImageDenoise | None = None
+        """The same library on a GPU, once that is asked for; on the processor where it knows none."""
         self._place: LibraryPlace | None = None
         self._problem = ""
 
@@ -47,6 +49,17 @@ class Denoiser:
             why = f" ({'; '.join(reasons)})" if reasons else ""
             self._problem = f"Open Image Denoise is not there{why}: {REMEDY}"
         raise DenoiserError(self._problem)
+
+    def _open_on_gpu(self) -> OpenImageDenoise:
+        """Return the library that open gives, on a GPU where it can use one. Raises DenoiserError as open does."""
+        if self._on_gpu is None:
+            self._on_gpu = library = self.open()
+            try:
+                self._on_gpu = OpenImageDenoise(library.path, use_gpu=True)
+            except DenoiserError as error:
+                log.warning("%s; the processor denoises", error)
+            log.info("Open Image Denoise runs on %s", self._on_gpu.device_name)
+        return self._on_gpu
 
     @property
     def description(self) -> str:
@@ -69,7 +82,7 @@ class Denoiser:
         Raises:
             DenoiserError: there is no library, or it fails.
         """
-        library = self.open()
+        library = self._open_on_gpu() if settings.denoising_use_gpu else self.open()
         quality, prefilter = settings.denoising_quality, settings.denoising_prefilter
         features = {
             name: np.nan_to_num(passes[entry])

@@ -28,6 +28,7 @@ from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
 from .direct_light.direct_light import DirectLight
 from .direct_light.shadow_catcher import ShadowCatcher
+from .film.ambient_occlusion import AmbientOcclusion
 from .film.events import BandEvents, Listeners
 from .film.film import Film
 from .film.light_groups import LightGroups
@@ -68,6 +69,7 @@ class StageSet(BufferSet):
     film = Part(Film)
     light_passes = Part(LightPasses)
     light_groups = Part(LightGroups)
+    ambient_occlusion = Part(AmbientOcclusion)
     caustic_radii = Part(CausticRadii)
     noise_estimate = Part(NoiseEstimate)
     photon_noise = Part(PhotonNoise)
@@ -84,7 +86,10 @@ class StageSet(BufferSet):
                 _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)
             )
         self.coverage = Coverage(library)
-        listeners = self.photon_noise, self.film, self.noise_estimate, self.light_passes, self.light_groups
+        listeners = (
+            *(self.photon_noise, self.film, self.noise_estimate),
+            *(self.light_passes, self.light_groups, self.ambient_occlusion),
+        )
         self.listeners = Listeners(stage for stage in listeners if stage.is_on)
         """Called for the events of a band, in this order."""
         self.bands = self._sizes.bands

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene to be rendered, as plain NumPy dataclasses; no GL, no Blender."""
 
-from .camera import Aperture, Camera, Panorama, PanoramaKind, Texels
+from .camera import Aperture, Camera, Panorama, PanoramaKind, SphericalStereo, Texels
 from .images import Image
 from .light_linking import ALL_SETS, LIGHT_SETS, LightLinking
 from .lights import UNLIMITED_BOUNCES, Light, LightKind, Mist, World
@@ -75,6 +75,7 @@ __all__ = [
     "Scene",
     "ShaderNode",
     "Shutter",
+    "SphericalStereo",
     "Texels",
     "Volume",
     "VolumeGrid",

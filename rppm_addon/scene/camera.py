@@ -70,6 +70,18 @@ class Aperture:
 
 
 @dataclass
+class SphericalStereo:
+    """One of two eyes that look around: in each direction it stands to the side of that direction."""
+
+    offset: float
+    """Meters from the camera to the right of where the eye looks; negative is to the left."""
+    convergence_distance: float | None = None
+    """Distance at which both eyes see the same, meters; None is parallel."""
+    pole_merge: tuple[float, float] | None = None
+    """Angles above and below the horizon, radians, from which on the offset fades and at which it ends."""
+
+
+@dataclass
 class Texels:
     """Places on a mesh of which a picture is taken, in place of what lies before a camera: a texture that is baked.
 
@@ -116,6 +128,8 @@ class Camera:
     """None is a perspective or orthographic camera."""
     aperture: Aperture | None = None
     """None is a pinhole: everything is in focus."""
+    stereo: SphericalStereo | None = None
+    """None is a camera whose rays come from one point, or from its aperture."""
     texels: Texels | None = None
     """Places on a mesh that are pictured in place of the view; the window is then in texels, and orthographic."""
 

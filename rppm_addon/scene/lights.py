@@ -93,6 +93,8 @@ class World:
     volume: NodeGraph | None = None
     """Nodes of the medium that fills the world, as Material.interior."""
     mist: Mist = field(default_factory=Mist)
+    ambient_occlusion_distance: float = field(default=10.0, metadata=declared(minimum=0.0))
+    """Length of the rays of the pass Ambient Occlusion, meters."""
     light_group: str = ""
     """As of a light."""
     visibility: RayVisibility = RayVisibility.ALL

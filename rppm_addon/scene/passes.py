@@ -159,6 +159,14 @@ PASSES = (
     _of_media("Indirect", "the light of surfaces, and of other places in volumes,"),
     RenderPass("Emission", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_emit", is_radiance=True),
     RenderPass("Environment", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_environment", is_radiance=True),
+    RenderPass("Ambient Occlusion", "RGB", PassKind.COLOR, Accumulation.SUM, "use_pass_ambient_occlusion"),
+    RenderPass(
+        "Roughness",
+        "X",
+        PassKind.VALUE,
+        Accumulation.MEAN,
+        description="A pass of the mean roughness of first surfaces, as Cycles bakes it; 1 where all light is diffuse",
+    ),
     RenderPass(
         "Shadow Catcher",
         "RGB",
@@ -206,6 +214,8 @@ _APART = {Accumulation.INSPECTION, Accumulation.COVERAGE, Accumulation.SURFACE_M
 FILM_PASSES = tuple(entry for entry in PASSES if entry.accumulation not in _APART)
 """Passes whose values shaders/film/passes.comp writes, and viewports show."""
 CAUSTICS = next(entry for entry in PASSES if entry.name == "Caustics")
+AMBIENT_OCCLUSION = next(entry for entry in PASSES if entry.name == "Ambient Occlusion")
+ROUGHNESS = next(entry for entry in PASSES if entry.name == "Roughness")
 DEEP_CUBEMAP = next(entry for entry in PASSES if entry.name == "Deep Cubemap")
 COMBINED = "Combined"
 NOISY_IMAGE = RenderPass("Noisy Image", "RGBA", PassKind.COLOR, Accumulation.MEAN)

@@ -4,6 +4,7 @@
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: HAIR_LOBES=1
+// lint: ROUGHNESS_PASS=1
 // lint: ASHIKHMIN_LOBES=1
 // First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than
 // half of the light straight on are skipped, and depth is measured along the view axis, or in a panorama along the ray.
@@ -106,6 +107,22 @@ SeenThroughMedia seen_through_media(CameraPath path, float distance) {
 
 float channel_mean(vec3 color) { return (color.r + color.g + color.b) / 3.0; }
 
+#ifdef ROUGHNESS_PASS
+// Mean roughness of what reflects and transmits, weighted as in Cycles, whose diffuse parts count where they are rough
+// themselves: 1 where nothing counts.
+float mean_roughness(Closure closure) {
+    vec2 sums = vec2(0.0);  // of roughness times weight, and of weights
+    float diffuse = unpackUnorm4x8(closure.diffuse_roughness).w;
+    if (diffuse > 0.0) sums += channel_mean(closure.diffuse) * vec2(diffuse, 1.0);
+    for (int k = 0; k < closure_lobes(closure); ++k) {
+        MicrofacetLobe lobe = stored_lobe(index, k);
+        if (lobe.kind != LOBE_NONE && lobe_has_facets(lobe.kind))
+            sums += channel_mean(lobe.weight) * vec2(sqrt(lobe.alpha), 1.0);
+    }
+    return sums.y > 0.0 ? sums.x / sums.y : 1.0;
+}
+#endif
+
 void write_first_surface(Closure closure, SeenThroughMedia seen) {
     counts = pass_counts[index] + uvec2(1u, hit ? 1u : 0u);
     pass_counts[index] = counts;
@@ -120,6 +137,9 @@ void write_first_surface(Closure closure, SeenThroughMedia seen) {
     write_pass(PASS_POSITION, closure.position + parameters.world_origin);
     write_pass(PASS_NORMAL, unpack_unit_vector(closure.shading_normal));
     write_pass(PASS_UV, uv_at(hits[index]));
+#ifdef ROUGHNESS_PASS
+    write_pass(PASS_ROUGHNESS, mean_roughness(closure));
+#endif
     write_pass(PASS_OBJECT_INDEX, float(shading_instances[attributes[triangle].instance].object_index));
     write_pass(PASS_MATERIAL_INDEX, float(materials[closure.material].pass_index));
 }

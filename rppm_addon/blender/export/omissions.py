@@ -50,10 +50,9 @@ OF_OBJECTS = (
 """By what an evaluated object uses."""
 
 
-def _is_spherical_stereo(scene: bpy.types.Scene) -> bool:
-    camera = None if scene.camera is None else scene.camera.data
-    panoramic = scene.render.use_multiview and getattr(camera, "type", "") == "PANO"
-    return panoramic and camera.stereo.use_spherical_stereo
+def _has_transparent_glass_of_cycles_only(scene: bpy.types.Scene) -> bool:
+    own = getattr(getattr(scene, "rppm", None), "film_transparent_glass", False)
+    return scene.render.film_transparent and bool(_cycles(scene, "film_transparent_glass", False)) and not own
 
 
 OF_SCENES = (
@@ -64,16 +63,11 @@ OF_SCENES = (
         lambda scene: scene.render.use_motion_blur and _cycles(scene, "rolling_shutter_type", "NONE") != "NONE",
     ),
     Omission(
-        "Spherical Stereo",
-        "both eyes look around from where they are",
-        ("render.use_multiview", "camera.data.stereo.use_spherical_stereo"),
-        _is_spherical_stereo,
-    ),
-    Omission(
         "Transparent Glass",
-        "glass is opaque in a transparent film",
+        "on for Cycles only, so that glass is opaque in the transparent film; switch it on in Film, or take all of "
+        "Cycles' settings with Sampling > Advanced > Copy from Cycles",
         ("render.film_transparent", "cycles.film_transparent_glass"),
-        lambda scene: scene.render.film_transparent and bool(_cycles(scene, "film_transparent_glass", False)),
+        _has_transparent_glass_of_cycles_only,
     ),
 )
 """By what a scene uses."""
@@ -81,7 +75,6 @@ OF_SCENES = (
 
 PASSES = {
     "use_pass_shadow": "Shadow",
-    "use_pass_ambient_occlusion": "Ambient Occlusion",
     "use_pass_subsurface_direct": "Subsurface Direct",
     "use_pass_subsurface_indirect": "Subsurface Indirect",
     "use_pass_subsurface_color": "Subsurface Color",

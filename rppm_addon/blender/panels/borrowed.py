@@ -13,9 +13,6 @@ UNFIT = {
     "NODE_DATA_PT_light": "as DATA_PT_light",
     "NODE_DATA_PT_spot": "as DATA_PT_light",
     "DATA_PT_falloff_curve": "light falls off with the square of the distance; nodes change that",
-    "DATA_PT_volume_render": "volumes are not rendered",
-    "MATERIAL_PT_freestyle_line": "as RENDER_PT_freestyle",
-    "RENDER_PT_freestyle": "the strokes, which Blender has the engine render, come out too wide",
     "RENDER_PT_simplify": "would stand before all other panels; RPPM_PT_simplify stands in its place",
     "RENDER_PT_simplify_greasepencil": "as RENDER_PT_simplify",
     "RENDER_PT_simplify_render": "as RENDER_PT_simplify",
@@ -23,8 +20,6 @@ UNFIT = {
     "VIEWLAYER_PT_layer_passes": "is empty without the panels of other engines",
 }
 """Panels for all engines that promise something that RPPM does not do, and what."""
-UNFIT_BEGINNINGS = ("VIEWLAYER_PT_freestyle",)
-
 FITTING = {
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
@@ -37,8 +32,7 @@ FITTING = {
 
 def _is_fit(panel: type) -> bool:
     name = panel.__name__
-    unfit = name in UNFIT or name.startswith(UNFIT_BEGINNINGS)
-    return name in FITTING or ("BLENDER_RENDER" in panel.COMPAT_ENGINES and not unfit)
+    return name in FITTING or ("BLENDER_RENDER" in panel.COMPAT_ENGINES and name not in UNFIT)
 
 
 def _panels() -> Iterator[type]:

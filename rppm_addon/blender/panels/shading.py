@@ -79,6 +79,47 @@ class RPPM_PT_world_surface(RppmWorldPanel, bpy.types.Panel):
     bl_label = "Surface"
 
 
+class RPPM_PT_world_volume(RppmWorldPanel, bpy.types.Panel):
+    bl_label = "Volume"
+    bl_options = {"DEFAULT_CLOSED"}
+    input_name = "Volume"
+
+
+class RPPM_PT_world_mist(RppmPanel, bpy.types.Panel):
+    bl_label = "Mist Pass"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "world"
+    is_decorated = True
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return True where a view layer has the pass."""
+        if not super().poll(context) or context.world is None:
+            return False
+        return any(layer.use_pass_mist for layer in context.scene.view_layers)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        mist, column = context.world.mist_settings, self.column()
+        for name in ("start", "depth", "falloff"):
+            column.prop(mist, name)
+
+
+class RPPM_PT_world_ambient_occlusion(RppmPanel, bpy.types.Panel):
+    """Distance of the pass, of what is baked, and of nodes that have none of their own."""
+
+    bl_label = "Ambient Occlusion"
+    bl_options = {"DEFAULT_CLOSED"}
+    bl_context = "world"
+    is_decorated = True
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.world is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.column().prop(context.world.light_settings, "distance")
+
+
 class RPPM_PT_ray_visibility(RppmPanel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -190,6 +231,9 @@ CLASSES = (
     RPPM_PT_material_settings,
     RPPM_PT_world_preview,
     RPPM_PT_world_surface,
+    RPPM_PT_world_volume,
+    RPPM_PT_world_mist,
+    RPPM_PT_world_ambient_occlusion,
     RPPM_PT_ray_visibility,
     RPPM_PT_shadow_terminator,
     RPPM_PT_world_ray_visibility,

@@ -51,7 +51,7 @@ StorageBlock("Camera", "CameraView camera;")
 def is_rasterized(camera: Camera) -> bool:
     """Whether a projection onto a plane from one point, or of parallel rays, shows what the camera sees, in rows that
     every device draws."""
-    is_plane = camera.panorama is None and camera.aperture is None and camera.texels is None
+    is_plane = all(part is None for part in (camera.panorama, camera.aperture, camera.stereo, camera.texels))
     return is_plane and not camera.is_sheared and camera.resolution[0] <= MAX_RASTER_PIXELS
 
 

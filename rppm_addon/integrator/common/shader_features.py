@@ -7,6 +7,7 @@ from ...materials.traits.ashikhmin_shirley import has_ashikhmin
 from ...materials.traits.hair import has_hair
 from ...materials.traits.interiors import Interior
 from ...materials.traits.path_depths import asks_for_bounces_by_type
+from ...scene.passes import ROUGHNESS
 from ...scene.scene import Scene
 from .viewport_demands import ViewportDemands
 
@@ -33,6 +34,12 @@ class ShaderFeatures:
     """Whether any kind of caustics is left out."""
     clamps_light: bool = False
     """Whether light that paths bring has a limit."""
+    has_spherical_stereo: bool = False
+    """Whether the camera stands to the side of each direction in which it looks."""
+    has_transparent_glass: bool = False
+    """Whether the film's background shows behind clear glass."""
+    shows_roughness: bool = False
+    """Whether the pass Roughness is rendered."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -51,6 +58,9 @@ class ShaderFeatures:
             or any(asks_for_bounces_by_type(material.graph) for material in scene.materials),
             scene.settings.dropped_caustics != 0,
             scene.settings.sample_clamp_direct > 0.0 or scene.settings.sample_clamp_indirect > 0.0,
+            scene.camera.stereo is not None,
+            scene.settings.film_transparent and scene.settings.film_transparent_glass,
+            ROUGHNESS in scene.settings.rendered_passes,
         )
 
     @property
@@ -66,5 +76,8 @@ class ShaderFeatures:
             "COUNTS_BOUNCES": self.counts_bounces,
             "DROPS_CAUSTICS": self.drops_caustics,
             "CLAMPS_LIGHT": self.clamps_light,
+            "SPHERICAL_STEREO": self.has_spherical_stereo,
+            "TRANSPARENT_GLASS": self.has_transparent_glass,
+            "ROUGHNESS_PASS": self.shows_roughness,
         }
         return {name: 1 for name, has in macros.items() if has}

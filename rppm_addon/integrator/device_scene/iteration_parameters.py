@@ -23,6 +23,7 @@ _SETTINGS = {
     "photon_bounces": "uint",
     "volume_bounces": "uint",
     "film_transparent": "uint",
+    "film_transparent_roughness": "float",
     "bounce_limits": "uvec4",
     "dropped_caustics": "uint",
     "clamp_direct": "float",

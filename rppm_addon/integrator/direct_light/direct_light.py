@@ -144,14 +144,33 @@ class DirectLight(Stage):
             active,
             iteration.number,
         )
-        linking = context.lights.linking_blocks(self.contributions.buffer)
+        self._trace(context, importons, context.lights.linking_blocks(self.contributions.buffer), iteration, segment)
+        active.run(self._add, {**context.blocks, **importons.blocks, **self.blocks})
+
+    def trace_rays(self, context: StageContext, importons: Importons, iteration: Iteration, segment: int) -> None:
+        """Trace shadow rays that another stage has left in ``blocks`` for the active camera paths, to no light.
+
+        Afterwards ``active_rays`` are those with a length, ``visibility`` says of each whether it arrives, and
+        ``contributions`` have lost what transparent surfaces take.
+        """
+        self.active_rays.take(importons.active, self._rays.buffer)
+        if not self.active_rays.known_empty:
+            self._trace(context, importons, None, iteration, segment)
+
+    def _trace(
+        self,
+        context: StageContext,
+        importons: Importons,
+        linking: Mapping[str, moderngl.Buffer] | None,
+        iteration: Iteration,
+        segment: int,
+    ) -> None:
         if context.materials.any_passes_shadow_rays:
             self._pass_surfaces(context, importons, linking, iteration, segment)
         else:
             context.acceleration.occluded(
-                self._rays.buffer, self.triangles.buffer, self.visibility.buffer, active, linking
+                self._rays.buffer, self.triangles.buffer, self.visibility.buffer, self.active_rays, linking
             )
-        active.run(self._add, {**context.blocks, **importons.blocks, **self.blocks})
 
     def _pass_surfaces(
         self,

@@ -145,7 +145,10 @@ def _have_alike(a: Scene, b: Scene, *names: str) -> bool:
 
 def differ_by_view(a: Scene, b: Scene) -> bool:
     """Whether a picture of one scene is one of the other from elsewhere."""
-    settings = ("film_transparent", "passes", "direct_light", "use_final_gather")
+    settings = (
+        *("film_transparent", "film_transparent_glass", "film_transparent_roughness"),
+        *("passes", "direct_light", "use_final_gather"),
+    )
     return (
         same_places(a, b)
         and _have_alike(a, b, "lights", "images")

@@ -76,6 +76,12 @@ class DenoisingSettings(SettingGroup):
             DenoisingQuality.FAST: ("Fast", "Least time"),
         },
     )
+    denoising_use_gpu: bool = setting(
+        False,
+        "Denoise on GPU",
+        "Denoise on the first GPU that Open Image Denoise can use, if there is one; meanwhile rendering has less "
+        "of the GPU's time and memory",
+    )
     denoising_start_sample: int = setting(
         1,
         "Denoising Start Sample",

@@ -48,6 +48,20 @@ class FilmSettings(SettingGroup):
         "Whether the background is transparent",
         where="Film > Transparent (render.film_transparent)",
     )
+    film_transparent_glass: bool = setting(
+        False,
+        "Transparent Glass",
+        "Whether a transparent film shows the background behind surfaces that transmit light clearly, for compositing "
+        "glass over another background",
+    )
+    film_transparent_roughness: float = setting(
+        0.1,
+        "Roughness Threshold",
+        "Roughness of glass, as its node shows it, above which it stays opaque in a transparent film",
+        minimum=0.0,
+        maximum=1.0,
+        unit="fraction",
+    )
     passes: tuple[str, ...] = setting(
         ("Depth", "Normal"),
         "Passes",

@@ -30,9 +30,11 @@ _LOBES = {
 _LIGHT = {"Direct": BakeFilter.DIRECT, "Indirect": BakeFilter.INDIRECT}
 _WHOLE = BakeFilter.EMIT | BakeFilter.DIRECT | BakeFilter.INDIRECT | sum(_LOBES.values(), BakeFilter(0))
 _SINGLE = {
+    "AO": "Ambient Occlusion",
     "POSITION": "Position",
     "NORMAL": "Normal",
     "UV": "UV",
+    "ROUGHNESS": "Roughness",
     "EMIT": "Emission",
     "ENVIRONMENT": "Environment",
 }
@@ -114,7 +116,8 @@ class BakePass:
 
     def _colors(self, frame: Frame) -> np.ndarray:
         if self.kind in _SINGLE:
-            return frame.passes[_SINGLE[self.kind]]
+            shown = frame.passes[_SINGLE[self.kind]]
+            return shown if shown.ndim == 3 else shown[..., None]
         colors = np.zeros_like(frame.combined[..., :3])
         for lobe in self._lobes:
             color = frame.passes[f"{lobe} Color"]

@@ -48,7 +48,7 @@ vec4 surface_emission(CameraPath path, ScatterPoint from, Closure closure) {
     bool is_for_shadow_rays = from.gathers && (iteration.gathers_lights == 0u || traits >> EMITTER_LINK_SHIFT != 0u);
     if (largest(closure.emission) > 0.0 && path_collects_emission(path) && !is_sampled && !is_for_shadow_rays)
         radiance.rgb = path.throughput * closure.emission * emission_mis_weight(from, closure.triangle);
-    if ((path.flags & PATH_CAMERA_TRANSPARENT) != 0u)
+    if (sees_background(path.flags))
         radiance.a = -(closure_holdout(closure) * (path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return radiance;
 }

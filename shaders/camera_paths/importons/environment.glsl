@@ -40,7 +40,7 @@ vec3 environment_radiance(CameraPath path, vec3 direction) {
 // Radiance and alpha of the environment as a background or a reflection. A transparent film leaves it out where the
 // camera sees it and no light object is in front.
 vec4 background_radiance(CameraPath path, vec3 environment, float shadow_ray_pdf, bool is_covered) {
-    if ((path.flags & PATH_CAMERA_TRANSPARENT) != 0u && !is_covered && iteration.film_transparent != 0u)
+    if (sees_background(path.flags) && !is_covered && iteration.film_transparent != 0u)
         return vec4(vec3(0.0), -(path.throughput.r + path.throughput.g + path.throughput.b) / 3.0);
     return vec4(path.throughput * environment * scatter_mis_weight(path.scatter_pdf, shadow_ray_pdf), 0.0);
 }
@@ -54,7 +54,7 @@ void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampli
         if (iteration.next_event == 0u) return;
         vec3 direct = path.throughput * environment * scatter_mis_weight(path.scatter_pdf, sampling.pdf);
         direct *= 1.0 - direct_photon_mis_weight(environment, sampling.nominal_pdf, path.photon_radius);
-        bool is_reused = (path.flags & PATH_SECONDARY_GATHER) != 0u || sampling.is_reused;
+        bool is_reused = is_secondary_gather(path) || sampling.is_reused;
         if (is_reused) final_gather_hits[index].radiance += direct;
         else radiances[index].rgb += clamped_light(final_gather_origins[index].weight * direct, 0u);
         return;

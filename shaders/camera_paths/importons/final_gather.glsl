@@ -8,6 +8,11 @@
 
 bool is_final_gather(CameraPath path) { return (path.flags & PATH_FINAL_GATHER) != 0u; }
 
+bool is_secondary_gather(CameraPath path) {
+    const uint both = PATH_FINAL_GATHER | PATH_SECONDARY_GATHER;
+    return (path.flags & both) == both;
+}
+
 // Whether a path may begin a final gather at a closure, or a secondary one. The first begins anywhere. In corners, near
 // the origin of a ray, the disk in which photons count reaches beyond the surface, to where there are no photons: there
 // a secondary one begins. Strands and points are too small for such disks, so that it begins on all of them.

@@ -58,7 +58,8 @@ void leave_importon(SurfaceVertex vertex, LobeSelection lobes, float u) {
 
 // Neighboring pixels reuse the radiance that leaves the first surface at which the ray of a final gather finds photons.
 void record_final_gather_hit(SurfaceVertex vertex, LobeSelection lobes) {
-    if (!is_final_gather(vertex.path) || (vertex.path.flags & (PATH_CAUSTIC | PATH_SECONDARY_GATHER)) != 0u) return;
+    if (!is_final_gather(vertex.path) || is_secondary_gather(vertex.path)) return;
+    if ((vertex.path.flags & PATH_CAUSTIC) != 0u) return;
     if (!(sum(lobes.stored) > 0.0)) return;
     final_gather_hits[vertex.index].position = vertex.closure.position;
     final_gather_hits[vertex.index].normal = vertex.closure.geometric_normal;

@@ -77,6 +77,9 @@ BsdfSample sample_selected_lobe(SurfaceVertex vertex, LobeSelection lobes, vec4 
                  | PATH_CAUSTIC | (sampled.transmitted ? PATH_TRANSMITTED : 0u)
                  | (lobe.alpha <= MIN_MIS_ALPHA ? PATH_SINGULAR : 0u) | (lights_found ? PATH_LIGHTS_FOUND : 0u)
                  | dispersed_flag(closure, lobe, sampled.transmitted);
+#ifdef TRANSPARENT_GLASS
+    bsdf.flags = with_clear_glass(bsdf.flags, path.flags, lobe, sampled.transmitted);
+#endif
     bsdf.gather_throughput = vec3(1.0);
     return bsdf;
 }

@@ -70,6 +70,9 @@ void sample_next_ray(SurfaceVertex vertex, LobeSelection lobes, RaySamples sampl
     float u = samples.lobe * (lobes.total / lobes.survival);
     float gather_weight = vertex.can_gather ? sum(lobes.stored) : 0.0;
     bool gathers = u < gather_weight, is_secondary = is_final_gather(vertex.path);
+#ifdef TRANSPARENT_GLASS
+    if (gathers && !is_secondary) vertex.path.flags &= ~PATH_BEHIND_CLEAR_GLASS;
+#endif
     if (gathers)
         vertex.path.flags = (vertex.path.flags & ~PATH_CAMERA_TRANSPARENT) | PATH_FINAL_GATHER
                             | (is_secondary ? PATH_SECONDARY_GATHER : 0u);

@@ -6,6 +6,7 @@
 #include "common/iteration.glsl"
 #include "common/path_depth.glsl"
 #include "camera_paths/importons/final_gather.glsl"
+#include "camera_paths/importons/clear_glass.glsl"
 
 // A path's lit_from is a light set, with flags above it.
 const uint LIT_FROM_BEHIND = 64u, LIT_GATHER_ORIGIN = 128u;
@@ -17,7 +18,7 @@ uint pack_lit_from(uint light_set, bool from_behind, bool is_gather_origin) {
 // Whether a path adds the emission that it meets. The ray of a final gather does so until something scatters it, with
 // an MIS weight, since shadow rays find the same lights. Without them, and behind a secondary gather, it does not.
 bool path_collects_emission(CameraPath path) {
-    bool is_direct = (path.flags & (PATH_CAUSTIC | PATH_SECONDARY_GATHER)) == 0u;
+    bool is_direct = (path.flags & PATH_CAUSTIC) == 0u && !is_secondary_gather(path);
     return !is_final_gather(path) || (is_direct && iteration.next_event != 0u && path.scatter_pdf > 0.0);
 }
 
@@ -26,8 +27,7 @@ bool path_collects_emission(CameraPath path) {
 vec3 scatter_position(uint index, CameraPath path, Ray ray) {
     if ((path.flags & PATH_SEEN_THROUGH) == 0u) return ray.origin;
     // A third gather begins within iteration.gathers_again_below of the vertex of the second one, which stands for it.
-    return (path.flags & PATH_SECONDARY_GATHER) != 0u ? final_gather_hits[index].position
-                                                      : final_gather_origins[index].position;
+    return is_secondary_gather(path) ? final_gather_hits[index].position : final_gather_origins[index].position;
 }
 
 ScatterPoint scatter_point(uint index, CameraPath path, Ray ray) {

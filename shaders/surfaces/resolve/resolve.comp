@@ -109,7 +109,8 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
 float wavelength_choice(uint index, uint flags) {
     const uint golden = 2654435769u;
     bool photon = parameters.path_kind == PATH_OF_PHOTON;
-    uint gathers = photon ? 0u : flags & (PATH_FINAL_GATHER | PATH_SECONDARY_GATHER);
+    bool gathered = !photon && (flags & PATH_FINAL_GATHER) != 0u;
+    uint gathers = gathered ? flags & (PATH_FINAL_GATHER | PATH_SECONDARY_GATHER) : 0u;
     uint start = pcg4d(uvec4(photon ? parameters.iteration : index, gathers, parameters.seed,
                              STAGE_WAVELENGTH << 24u | parameters.path_kind))
                      .x;

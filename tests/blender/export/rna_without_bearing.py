@@ -62,7 +62,7 @@ WITHOUT_BEARING = {
     "SunLight": _LIGHT,
     "AreaLight": _LIGHT,
     "World": """
-        animation_data use_eevee_finite_volume light_settings probe_resolution sun_threshold sun_angle
+        animation_data use_eevee_finite_volume probe_resolution sun_threshold sun_angle
         use_sun_shadow sun_shadow_maximum_resolution sun_shadow_filter_radius use_sun_shadow_jitter
         sun_shadow_jitter_overblur
     """,

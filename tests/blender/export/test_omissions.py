@@ -52,16 +52,9 @@ def see_through(scene):
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
 
 
-def look_around_with_both_eyes(scene):
-    scene.render.use_multiview = True
-    scene.camera.data.type = "PANO"
-    scene.camera.data.stereo.use_spherical_stereo = True
-
-
 USES = {
     "Adaptive Subdivision": subdivide,
     "Rolling Shutter": roll,
-    "Spherical Stereo": look_around_with_both_eyes,
     "Transparent Glass": see_through,
 }
 ALL = (*omissions.OF_OBJECTS, *omissions.OF_SCENES)

@@ -8,7 +8,6 @@ from drawing import context_of
 
 from rppm_addon.blender.panels import borrowed
 
-NOT_RENDERED = "has no effect on RPPM's picture"
 OF_CYCLES = "is about how Cycles works"
 
 ALIKE = {
@@ -19,7 +18,7 @@ ALIKE = {
         motion_blur_curve performance sampling sampling_viewport simplify simplify_culling
         simplify_render simplify_viewport subdivision filter passes
     """,
-    ("CYCLES_WORLD_PT_", "RPPM_PT_world_"): "preview ray_visibility surface",
+    ("CYCLES_WORLD_PT_", "RPPM_PT_world_"): "mist preview ray_visibility surface volume",
 }
 """Endings of the names of panels of Cycles that have the same endings here, by both beginnings."""
 COUNTERPARTS = {
@@ -52,14 +51,17 @@ COUNTERPARTS = {
     "CYCLES_PT_post_processing": "RENDER_PT_post_processing",
     "CYCLES_RENDER_PT_passes_lightgroups": "RPPM_PT_passes_light_groups",
     "VIEWLAYER_PT_layer_passes_lightgroups": "RPPM_PT_passes_light_groups",
+    "CYCLES_RENDER_PT_passes_aov": "RPPM_PT_passes_aov",
+    "CYCLES_RENDER_PT_passes_crypto": "RPPM_PT_passes_cryptomatte",
     "CYCLES_RENDER_PT_passes_data": "RPPM_PT_passes",
+    "CYCLES_RENDER_PT_passes_light": "RPPM_PT_passes",
     "OBJECT_PT_shadow_terminator": "RPPM_PT_shadow_terminator",
 }
 """Panels of Cycles, and those that stand in their place."""
 COUNTERPARTS |= {theirs + name: ours + name for (theirs, ours), names in ALIKE.items() for name in names.split()}
 
 EXCLUDED = {
-    "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are refused",
+    "CYCLES_CAMERA_PT_lens_custom_parameters": "custom cameras are rendered in perspective",
     "CYCLES_LIGHT_PT_settings": "RPPM_PT_light shows bounces, shadows and portals",
     "CYCLES_MATERIAL_PT_settings_volume": OF_CYCLES,
     "CYCLES_OBJECT_PT_shading_caustics": "caustics need no switch",
@@ -67,16 +69,11 @@ EXCLUDED = {
     "CYCLES_RENDER_PT_curves_viewport_display": "Blender's own viewports draw so",
     "CYCLES_RENDER_PT_debug": OF_CYCLES,
     "CYCLES_RENDER_PT_light_paths_fast_gi": OF_CYCLES,
-    "CYCLES_RENDER_PT_passes_aov": f"passes of materials: {NOT_RENDERED}",
-    "CYCLES_RENDER_PT_passes_crypto": f"Cryptomatte: {NOT_RENDERED}",
-    "CYCLES_RENDER_PT_passes_light": f"passes of light: {NOT_RENDERED}",
     "CYCLES_RENDER_PT_performance_final_render": "persistent data is not kept",
     "CYCLES_RENDER_PT_performance_threads": "the graphics device renders",
     "CYCLES_RENDER_PT_performance_viewport": "the viewport finds its resolution itself",
     "CYCLES_RENDER_PT_sampling_advanced_sample_subset": OF_CYCLES,
     "CYCLES_RENDER_PT_volumes": OF_CYCLES,
-    "CYCLES_WORLD_PT_mist": f"the mist pass: {NOT_RENDERED}",
-    "CYCLES_WORLD_PT_volume": NOT_RENDERED,
 }
 """Panels of Cycles that RPPM has nothing for, and why."""
 OLDER = {
@@ -90,8 +87,8 @@ OLDER = {
 EXCLUDED_BEGINNINGS = {
     "CYCLES_RENDER_PT_performance_compositor": "is the compositor's, which needs no engine",
     "CYCLES_RENDER_PT_sampling_path_guiding": OF_CYCLES,
-    "CYCLES_RENDER_PT_sampling_render_denoise": f"denoising: {NOT_RENDERED}",
-    "CYCLES_RENDER_PT_sampling_viewport_denoise": f"denoising: {NOT_RENDERED}",
+    "CYCLES_RENDER_PT_sampling_render_denoise": "RPPM_PT_sampling shows it",
+    "CYCLES_RENDER_PT_sampling_viewport_denoise": "RPPM_PT_sampling shows it",
     "CYCLES_WORLD_PT_settings": OF_CYCLES,
 }
 
@@ -115,7 +112,7 @@ def test_every_panel_of_cycles_has_a_counterpart_or_a_reason(scene):
     missing = {
         name
         for name in shown("CYCLES") - ours - set(borrowed.UNFIT) - set(COUNTERPARTS) - set(EXCLUDED) - set(OLDER)
-        if not name.startswith((*EXCLUDED_BEGINNINGS, *borrowed.UNFIT_BEGINNINGS))
+        if not name.startswith(tuple(EXCLUDED_BEGINNINGS))
     }
     assert not missing
     assert not (set(COUNTERPARTS) | set(EXCLUDED)) & ours and not set(COUNTERPARTS) & set(EXCLUDED)
@@ -130,7 +127,7 @@ def test_the_lists_name_nothing_that_is_not_there(scene):
             "NODE_DATA_PT_light", "NODE_DATA_PT_spot", "DATA_PT_falloff_curve",
         }  # fmt: skip
         assert everything >= borrowed.FITTING
-        for beginning in (*EXCLUDED_BEGINNINGS, *borrowed.UNFIT_BEGINNINGS):
+        for beginning in EXCLUDED_BEGINNINGS:
             assert any(name.startswith(beginning) for name in everything), beginning
 
 
@@ -149,12 +146,14 @@ def test_the_lists_name_nothing_that_is_not_there(scene):
         "mesh": {"DATA_PT_uv_texture", "DATA_PT_vertex_colors", "DATA_PT_customdata", "DATA_PT_mesh_attributes"},
         "world": {"WORLD_PT_context_world"},
         "light and material": {"DATA_PT_context_light", "EEVEE_MATERIAL_PT_context_material"},
-        "view_layer": {"VIEWLAYER_PT_layer"},
+        "view_layer": {"VIEWLAYER_PT_layer", "VIEWLAYER_PT_freestyle", "VIEWLAYER_PT_freestyle_linestyle_color"},
+        "freestyle": {"RENDER_PT_freestyle", "MATERIAL_PT_freestyle_line"},
+        "volume": {"DATA_PT_volume_render", "DATA_PT_volume_file"},
     }.items(),
 )  # fmt: skip
 def test_tabs_have_what_users_look_for(scene, tab, names):
     assert names <= shown("RPPM")
-    assert not shown("RPPM") & {"DATA_PT_light", "RENDER_PT_eevee_sampling", "RENDER_PT_freestyle"}
+    assert not shown("RPPM") & {"DATA_PT_light", "RENDER_PT_eevee_sampling"}
 
 
 def test_panels_without_a_place_do_not_show(scene):

@@ -9,12 +9,12 @@ from support.iteration_block import iteration_buffer
 
 from rppm_addon.gl.programs.sources import expand
 from rppm_addon.integrator.camera_paths.gbuffer import GBuffer
-from rppm_addon.integrator.camera_paths.primary_rays import PrimaryRays
+from rppm_addon.integrator.camera_paths.primary_rays import PrimaryRays, stereo_parameters
 from rppm_addon.integrator.common.camera_view import CAMERA_VIEW, camera_view
 from rppm_addon.integrator.common.records.camera_paths import CAMERA_PATH
 from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE, RAY
 from rppm_addon.scene import DirectLight, FirstCameraHits, Light, LightKind
-from rppm_addon.scene.camera import Aperture, Camera, Panorama, PanoramaKind
+from rppm_addon.scene.camera import Aperture, Camera, Panorama, PanoramaKind, SphericalStereo
 
 WIDTH, HEIGHT = 24, 16
 KIND = PanoramaKind
@@ -29,7 +29,9 @@ def traced_rays(context, library, camera, iteration=1, seed=0):
         "Camera": gl.buffer(camera_view(camera, 0, height, (0.0, 0.0)).tobytes()), "Rays": rays, "CameraPaths": paths,
         "Iteration": iteration_buffer(context, number=iteration + 1, seed=seed),
     }  # fmt: skip
-    library.compute("camera_paths/primary_rays/rays.comp").run(width * height, blocks, {"first_pixel": 0})
+    defines = {} if camera.stereo is None else {"SPHERICAL_STEREO": 1}
+    program = library.compute("camera_paths/primary_rays/rays.comp", defines)
+    program.run(width * height, blocks, {"first_pixel": 0, **stereo_parameters(camera)})
     found = [np.frombuffer(buffer.read(), record.dtype) for buffer, record in ((rays, RAY), (paths, CAMERA_PATH))]
     for buffer in blocks.values():
         buffer.release()
@@ -351,3 +353,30 @@ def test_what_is_drawn_is_what_is_traced(mapper):
     seen = same & (traced["triangle"] != NO_TRIANGLE)
     np.testing.assert_array_equal(drawn[seen], traced[seen])
     assert seen.mean() > 0.5
+
+
+@pytest.mark.parametrize("distance", [None, 2.5])
+def test_eyes_stand_beside_the_directions_in_which_they_look(context, library, distance):
+    """They meet at the convergence distance, and at the poles where they are merged."""
+    panorama = Panorama(KIND.EQUIRECTANGULAR)
+    matrix = scenes.looking((0.3, 0.2, 0.1), (1.0, 2.0, 0.7))
+    lenses = (None, *(SphericalStereo(0.1 * side, distance, (0.5, 1.2)) for side in (-1.0, 1.0)))
+    middle, left, right = (
+        traced_rays(
+            context,
+            library,
+            Camera(matrix, (0.0, 1.0, 0.0, 1.0), WIDTH, HEIGHT, clip_start=0.0, panorama=panorama, stereo=stereo),
+        )[0]
+        for stereo in lenses
+    )
+    directions = middle["direction"].astype(np.float64)
+    altitudes = np.abs(np.arcsin((directions @ matrix[:3, 1]).clip(-1.0, 1.0)))
+    factors = np.where(altitudes < 0.5, 1.0, np.cos(0.5 * np.pi * (altitudes - 0.5) / 0.7)) * (altitudes < 1.2)
+    for eye, side in ((left, -1.0), (right, 1.0)):
+        beside = unit(np.cross(directions, matrix[:3, 1]))
+        offsets = 0.1 * side * factors[..., None] * beside
+        np.testing.assert_allclose(
+            eye["origin"] - middle["origin"], offsets, atol=2e-4
+        )  # as near as drivers come to asin
+        expected = directions if distance is None else unit(distance * directions - offsets)
+        np.testing.assert_allclose(eye["direction"], expected, atol=2e-4)

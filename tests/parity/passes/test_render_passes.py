@@ -5,15 +5,15 @@ import bpy
 import numpy as np
 import pytest
 
-from rppm_addon.scene.passes import CAUSTICS, FILM_PASSES, SCATTERED_LIGHT, VOLUME_LIGHT
+from rppm_addon.scene.passes import AMBIENT_OCCLUSION, CAUSTICS, FILM_PASSES, ROUGHNESS, SCATTERED_LIGHT, VOLUME_LIGHT
 
 from ..engines import PIXEL_CENTERS, cycles_channels, cycles_pass, exported_scene, render_frame, stacked, unfilter
 from ..scenes import DIFFUSE, EMISSION, GLOSSY, ball, camera, light, material, new_scene, place, plane
 
-OF_LIGHT = {CAUSTICS.name, *(entry.name for entry in VOLUME_LIGHT)}.union(
+OF_LIGHT = {CAUSTICS.name, AMBIENT_OCCLUSION.name, ROUGHNESS.name, *(entry.name for entry in VOLUME_LIGHT)}.union(
     *((entry.name, entry.divided_by) for entry in SCATTERED_LIGHT)
 )
-"""Passes that test_light_passes.py compares."""
+"""Passes that others of these tests compare."""
 FIRST_SURFACE = tuple(entry for entry in FILM_PASSES if entry.name not in OF_LIGHT)
 WORLD, MIRROR = 0.3, (0.9, 0.8, 0.7)
 

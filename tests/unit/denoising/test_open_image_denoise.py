@@ -125,6 +125,87 @@ def test_files_that_are_no_such_library(tmp_path, place):
         OpenImageDenoise(other)
 
 
+def test_images_that_are_copied_to_the_device_are_denoised_alike(library, place, noisy):
+    copying = OpenImageDenoise(place.path, threads=1, copies_images=True)
+    images = {"color": noisy, "albedo": noisy.clip(0.0, 1.0)}
+    found, expected = (which.filter(images, DenoisingQuality.FAST, hdr=True) for which in (copying, library))
+    copying.release()
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
+class FakeGpu:
+    """A library that knows the processor and a GPU, and fills the pictures of the GPU with a number."""
+
+    def __init__(self):
+        self.opened = []
+        self.functions = {}
+        self.buffers = []
+
+    def oidnGetNumPhysicalDevices(self):
+        return 2
+
+    def oidnGetPhysicalDeviceInt(self, number, name):
+        return (1, 3)[number]
+
+    def oidnGetPhysicalDeviceString(self, number, name):
+        return (b"A processor", b"A card")[number]
+
+    def oidnNewDeviceByID(self, number):
+        self.opened.append(number)
+        return 7
+
+    def oidnGetDeviceInt(self, device, name):
+        return 20303
+
+    def oidnNewBuffer(self, device, size):
+        self.buffers.append(size)
+        return len(self.buffers)
+
+    def oidnReleaseBuffer(self, buffer):
+        self.buffers[buffer - 1] = None
+
+    def oidnReadBuffer(self, buffer, offset, size, address):
+        np.ctypeslib.as_array((ctypes.c_float * (size // 4)).from_address(address))[:] = 0.25
+
+    def __getattr__(self, name):
+        if not name.startswith("oidn"):
+            raise AttributeError(name)
+        return self.functions.setdefault(name, lambda *_: 0)
+
+
+class Callable:
+    """A function of FakeGpu that takes declarations of types."""
+
+    def __init__(self, function):
+        self.function = function
+
+    def __call__(self, *given):
+        return self.function(*given)
+
+
+def test_a_gpu_denoises_where_the_library_knows_one(monkeypatch, tmp_path):
+    fake = FakeGpu()
+    for name in dir(FakeGpu):
+        if name.startswith("oidn"):
+            setattr(fake, name, Callable(getattr(fake, name)))
+    (tmp_path / "library.so").touch()
+    monkeypatch.setattr(ctypes, "CDLL", lambda path: fake)
+    library = OpenImageDenoise(tmp_path / "library.so", use_gpu=True)
+    assert (fake.opened, library.device_name) == ([1], "A card")
+    denoised = library.filter({"color": np.ones((2, 3, 3))}, DenoisingQuality.HIGH)
+    assert (denoised == 0.25).all() and fake.buffers == [None, None]
+    assert OpenImageDenoise(tmp_path / "library.so").device_name == "the processor"
+
+
+def test_without_a_gpu_the_processor_denoises(place, noisy):
+    settings = RenderSettings(
+        use_denoising=True, denoising_use_gpu=True, denoising_input_passes=DenoisingInputPasses.RGB
+    )
+    picture = np.concatenate([noisy, np.ones_like(noisy[..., :1])], axis=-1)
+    denoised = Denoiser([place]).denoise(picture, {}, settings)
+    assert denoised[..., :3].std() < noisy.std()
+
+
 class FakeLibrary:
     """Stands in for the file of a version, and notes the quality that is asked for."""
 
@@ -221,4 +302,5 @@ def test_signatures_are_complete(open_version):
     _, fake = open_version(20303)
     assert len(fake.functions) > 10
     for function in fake.functions.values():
-        assert function.restype in (None, ctypes.c_void_p, ctypes.c_int) and function.argtypes
+        assert function.restype in (None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p)
+        assert function.argtypes or function is fake.functions["oidnGetNumPhysicalDevices"]

@@ -34,7 +34,12 @@ def export_camera(
         raise SceneError("the scene has no camera; add one, or make one active with Scene properties > Camera")
     camera_object = used.evaluated_get(depsgraph)
     camera = camera_data(camera_object)
-    if camera.type not in {"PERSP", "ORTHO", "PANO"}:
+    if camera.type == "CUSTOM" and report is not None:
+        report.warn(
+            f'Camera "{camera_object.name}": the code of its lens (Open Shading Language) is not run, and the picture '
+            "is in perspective, with the camera's focal length; choose another lens type, or render with Cycles"
+        )
+    if camera.type not in {"PERSP", "ORTHO", "PANO", "CUSTOM"}:
         raise SceneError(
             f'camera "{camera_object.name}" is of type {camera.type}, which RPPM cannot render; '
             "set its lens type to Perspective, Orthographic or Panoramic"
@@ -54,6 +59,7 @@ def export_camera(
         crop=crop(scene.render, width, height),
         panorama=export_panorama(camera, camera_object.name, across, upward) if panoramic else None,
         aperture=export_aperture(camera, matrix, depsgraph),
+        stereo=eye.stereo_of(camera_object),
     )
 
 

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 
+from ....scene import SphericalStereo
 from .stand_in import camera_data
 
 
@@ -25,14 +26,37 @@ class Eye:
     def matrix_of(self, camera: bpy.types.Object) -> np.ndarray:
         """(4, 4) float64, camera to world."""
         is_plain = self._engine is None or camera.type != "CAMERA"
-        matrix = camera.matrix_world if is_plain else self._engine.camera_model_matrix(camera)
-        return np.array(matrix, np.float64)
+        if is_plain:
+            return np.array(camera.matrix_world, np.float64)
+        is_spherical = self._is_spherical(camera)
+        return np.array(self._engine.camera_model_matrix(camera, use_spherical_stereo=is_spherical), np.float64)
 
     def shift_of(self, camera: bpy.types.Object) -> float:
         """To the right, as Blender has it."""
         if self._engine is None or camera.type != "CAMERA":
             return camera_data(camera).shift_x
-        return self._engine.camera_shift_x(camera)
+        return self._engine.camera_shift_x(camera, use_spherical_stereo=self._is_spherical(camera))
+
+    def stereo_of(self, camera: bpy.types.Object) -> SphericalStereo | None:
+        """The eye of an evaluated camera with spherical stereo; None for other cameras."""
+        if self._engine is None or camera.type != "CAMERA" or not self._is_spherical(camera):
+            return None
+        side = _SIDES.get(self._engine.active_view_get(), 0.0)
+        stereo = camera.data.stereo
+        is_parallel = stereo.convergence_mode == "PARALLEL"
+        merge = stereo.pole_merge_angle_from, stereo.pole_merge_angle_to
+        return SphericalStereo(
+            offset=0.5 * side * stereo.interocular_distance,
+            convergence_distance=None if is_parallel else stereo.convergence_distance,
+            pole_merge=merge if stereo.use_pole_merge else None,
+        )
+
+    def _is_spherical(self, camera: bpy.types.Object) -> bool:
+        return bool(self._engine is not None and self._engine.use_spherical_stereo(camera))
+
+
+_SIDES = {"left": -1.0, "right": 1.0}
+"""By view, the side of its eye."""
 
 
 def views_of(engine: bpy.types.RenderEngine, layer: str) -> list[str]:

@@ -3,7 +3,7 @@
 
 import re
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
@@ -14,6 +14,7 @@ from ....scene.images import Image, encode_srgb
 from ..common.slices import Slices
 from .color_spaces import WHITE_IN_CYCLES, scene_linear
 from .kept_images import keep, kept
+from .multilayer import PassSelection, file_of, read_pass
 from .texture_limit import limited
 
 Warn = Callable[[str], None]
@@ -23,6 +24,7 @@ _PART = 1 << 16
 """Numbers that are looked at while they lie in a cache."""
 _LARGE = 1 << 20
 """Pixels from which on an image is read in steps."""
+_FIRST_PASS = PassSelection()
 _LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
 
 
@@ -49,12 +51,14 @@ class ImageTable:
         if image is None:
             warn("has no image and counts as magenta; choose one")
             return MISSING
+        selection = PassSelection.of_user(node.image_user)
         if image.source not in {"SEQUENCE", "MOVIE"}:
-            return self._index((image.as_pointer(),), lambda: image, image, warn)
+            return self._index((image.as_pointer(), selection), lambda: image, image, warn, selection)
         self.reads_by_frame += 1
         number = frame_of(node.image_user, self.frame)
         load = _of_movie if image.source == "MOVIE" else _of_sequence
-        return self._index((image.as_pointer(), number), lambda: load(image, number), image, warn)
+        key = (image.as_pointer(), number, selection)
+        return self._index(key, lambda: load(image, number), image, warn, selection)
 
     def computed(self, key: Hashable, compute: Callable[[], Image]) -> int:
         """Index of an image that belongs to no datablock."""
@@ -87,10 +91,11 @@ class ImageTable:
         load: Callable[[], bpy.types.Image | None],
         image: bpy.types.Image,
         warn: Warn,
+        selection: PassSelection = _FIRST_PASS,
     ) -> int:
         if key not in self._indices:
             record = self._unfinished.setdefault(key, {})
-            exported = self._pixels(image, load, record)
+            exported = self._pixels(image, load, record, selection)
             del self._unfinished[key]
             if exported is None:
                 self._indices[key] = MISSING
@@ -101,10 +106,16 @@ class ImageTable:
             warn(f'needs image "{image.name}", {_reason(image)}; magenta stands in')
         return self._indices[key]
 
-    def _pixels(self, image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], record: dict) -> Image | None:
+    def _pixels(
+        self,
+        image: bpy.types.Image,
+        load: Callable[[], bpy.types.Image | None],
+        record: dict,
+        selection: PassSelection,
+    ) -> Image | None:
         if "whole" not in record:
             is_none = _is_no_file(image.filepath, image)
-            record["whole"] = None if is_none else _export(image, load, self.slices, record)
+            record["whole"] = None if is_none else _export(image, load, self.slices, record, selection)
         whole = record["whole"]
         if whole is None or self.longest_side == 0:
             return whole
@@ -112,25 +123,62 @@ class ImageTable:
 
 
 def _export(
-    image: bpy.types.Image, load: Callable[[], bpy.types.Image | None], slices: Slices, record: dict
+    image: bpy.types.Image,
+    load: Callable[[], bpy.types.Image | None],
+    slices: Slices,
+    record: dict,
+    selection: PassSelection,
 ) -> Image | None:
     """Return the pixels of an image as ``load`` gives it; None when it has none.
 
-    record: the steps that earlier slices have done.
+    record: the steps that earlier slices have done. selection: what is shown of a multilayer file.
     """
-    known = slices.step_alone(record, "known", lambda: kept(image))  # asks for its size: Blender decodes the file
+    # Asks for the image's size: Blender decodes the file.
+    known = slices.step_alone(record, "known", lambda: kept(image, selection))
     if known is not None:
         return known
     loaded = load()
     if loaded != image:
-        pixels = None if loaded is None else read_pixels(loaded)
+        exported = None if loaded is None else _read_loaded(image, loaded, selection)
         if loaded is not None:
             bpy.data.images.remove(loaded)
-        return None if pixels is None else _encoded(_Look.of(image), pixels)
-    exported = _read_in_steps(image, slices, record)
+        return exported
+    if _is_multilayer(image):
+        exported = slices.step_alone(record, "pass", lambda: _multilayer_pass(image, image, selection))
+    else:
+        exported = _read_in_steps(image, slices, record)
     if exported is not None:
-        keep(image, exported)
+        keep(image, selection, exported)
     return exported
+
+
+def _read_loaded(image: bpy.types.Image, loaded: bpy.types.Image, selection: PassSelection) -> Image | None:
+    """Return what one file of an image shows, which was loaded as an image of its own."""
+    pixels = read_pixels(loaded)
+    if pixels is None and _is_multilayer(loaded):
+        return _multilayer_pass(image, loaded, selection)
+    return None if pixels is None else _encoded(_Look.of(image), pixels)
+
+
+def _is_multilayer(image: bpy.types.Image) -> bool:
+    """Whether an image's file, which Blender has decoded, has several layers or passes."""
+    return image.type == "MULTILAYER"
+
+
+def _multilayer_pass(image: bpy.types.Image, loaded: bpy.types.Image, selection: PassSelection) -> Image | None:
+    """Return the selected pass of a multilayer file. As in Blender, passes of one or two channels are data."""
+    with file_of(loaded) as path:
+        pixels = read_pass(path, selection)
+    if pixels is None:
+        return None
+    look = replace(_Look.of(image), is_float=True)
+    is_data = pixels.shape[-1] < 3
+    pixels = _four_channels(pixels, is_float=True)
+    if is_data:
+        return Image(look.name, pixels, "LINEAR")
+    if look.space not in _LINEAR_SPACES:
+        pixels[..., :3] = scene_linear(pixels[..., :3], look.space)
+    return _encoded(look, pixels)
 
 
 def _read_in_steps(image: bpy.types.Image, slices: Slices, record: dict) -> Image | None:

@@ -9,34 +9,35 @@ from bpy.app.handlers import persistent
 
 from ....scene import Image
 from ...app_handlers import add_handlers, remove_handlers
+from .multilayer import PassSelection
 
 MOST_BYTES = 1 << 30
 """Most bytes of pixels that are kept; the images that were used longest ago are dropped first."""
-_kept: dict[int, tuple[tuple, Image]] = {}
-"""By session_uid, what an image was like when it was read, and its pixels."""
+_kept: dict[tuple[int, PassSelection], tuple[tuple, Image]] = {}
+"""By session_uid and the selection of a pass, what an image was like when it was read, and its pixels."""
 _is_keeping = False
 _lock = threading.Lock()
 """Viewports and renders export in threads of their own."""
 
 
-def kept(image: bpy.types.Image) -> Image | None:
+def kept(image: bpy.types.Image, selection: PassSelection) -> Image | None:
     """The pixels that an image had when they were kept; None where there are none or it may have others now."""
-    now = _key(image)
+    now, place = _key(image), (image.session_uid, selection)
     with _lock:
-        key, pixels = _kept.pop(image.session_uid, (None, None))
+        key, pixels = _kept.pop(place, (None, None))
         if pixels is None or key != now:
             return None
-        _kept[image.session_uid] = key, pixels
+        _kept[place] = key, pixels
     return pixels
 
 
-def keep(image: bpy.types.Image, pixels: Image) -> None:
+def keep(image: bpy.types.Image, selection: PassSelection, pixels: Image) -> None:
     """Keep what was read, where a later export can see whether it still holds."""
     key = _key(image)
     if not _is_keeping or key is None:
         return
     with _lock:
-        _kept[image.session_uid] = key, pixels
+        _kept[image.session_uid, selection] = key, pixels
         while sum(kept.pixels.nbytes for _, kept in _kept.values()) > MOST_BYTES:
             del _kept[next(iter(_kept))]
 

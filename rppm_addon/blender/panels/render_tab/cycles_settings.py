@@ -28,11 +28,19 @@ SHARED = {
             "sample_clamp_indirect",
             "caustics_reflective",
             "caustics_refractive",
+            "film_transparent_glass",
+            "film_transparent_roughness",
         )
     },
     **{
         name: name
-        for what in ("use_{}denoising", "{}denoising_input_passes", "{}denoising_prefilter", "{}denoising_quality")
+        for what in (
+            "use_{}denoising",
+            "{}denoising_input_passes",
+            "{}denoising_prefilter",
+            "{}denoising_quality",
+            "{}denoising_use_gpu",
+        )
         for name in (what.format(""), what.format("preview_"))
     },
     "preview_denoising_start_sample": "preview_denoising_start_sample",

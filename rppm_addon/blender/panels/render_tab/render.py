@@ -52,6 +52,12 @@ class RPPM_PT_film(RppmPanel, bpy.types.Panel):
         if scene.rppm.pixel_filter_type != "BOX":
             column.prop(scene.rppm, "filter_width", text="Width")
         column.prop(scene.render, "film_transparent", text="Transparent")
+        glass = column.column()
+        glass.active = scene.render.film_transparent
+        glass.prop(scene.rppm, "film_transparent_glass")
+        row = glass.row()
+        row.active = scene.rppm.film_transparent_glass
+        row.prop(scene.rppm, "film_transparent_roughness")
 
 
 CLASSES = (

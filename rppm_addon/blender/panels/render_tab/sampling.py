@@ -85,6 +85,7 @@ class _DenoisePanel(RppmPanel):
         column.prop(settings, f"{self.prefix}denoising_input_passes", text="Passes")
         column.prop(settings, f"{self.prefix}denoising_prefilter", text="Prefilter")
         column.prop(settings, f"{self.prefix}denoising_quality", text="Quality")
+        column.prop(settings, f"{self.prefix}denoising_use_gpu", text="Use GPU")
         if self.prefix:
             column.prop(settings, f"{self.prefix}denoising_start_sample", text="Start Sample")
 

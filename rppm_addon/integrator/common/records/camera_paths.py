@@ -49,7 +49,7 @@ class CameraPathFlag(enum.IntFlag):
     """Since the ray of its final gather left, a specular lobe has scattered the path, or a transparent surface that
     stops shadow rays has weakened it."""
     SECONDARY_GATHER = 128
-    """The path has left a second surface by a lobe that stores photons."""
+    """The path of a final gather has left a second surface by a lobe that stores photons."""
     DENOISING_DATA_FOUND = 256
     """The passes of denoisers have the path's surface."""
     LIGHTS_FOUND = 512
@@ -59,6 +59,9 @@ class CameraPathFlag(enum.IntFlag):
 
 
 Constants("CameraPathFlags", PATH=CameraPathFlag)
+Constants("ClearGlass", PATH_BEHIND_CLEAR_GLASS=CameraPathFlag.SECONDARY_GATHER)
+"""A flag of paths that have passed clear glass in a transparent film, as long as they are not those of a final
+gather."""
 Constants("PathHistory", SCATTER=Scatter, HISTORY=PathHistory)
 CAMERA_PATH = Record(
     "CameraPath",

@@ -152,12 +152,15 @@ def test_a_camera_that_is_no_camera(scene, kind, lens):
     assert exported.camera.clip_end == 1e5
 
 
-def test_a_camera_by_shader_names_the_remedy(scene):
+def test_a_camera_by_shader_is_rendered_in_perspective(scene):
     if "CUSTOM" not in scene.camera.data.bl_rna.properties["type"].enum_items:
         pytest.skip("this Blender has no custom cameras")
     scene.camera.data.type = "CUSTOM"
-    with pytest.raises(SceneError, match='"Camera".*Perspective, Orthographic or Panoramic'):
-        export(scene)
+    exported = export(scene)
+    (warning,) = exported.warnings
+    assert '"Camera"' in warning and "in perspective" in warning and "Open Shading Language" in warning
+    scene.camera.data.type = "PERSP"
+    assert exported.camera.window == export(scene).camera.window
 
 
 @pytest.mark.parametrize("kind", ["PERSP", "ORTHO", "PANO"])

@@ -13,6 +13,7 @@ from node_trees import add_node, added, link, shaders, source, surface, to_surfa
 from rppm_addon.blender.export.images import kept_images
 from rppm_addon.blender.export.images.color_spaces import scene_linear
 from rppm_addon.blender.export.images.images import MISSING
+from rppm_addon.blender.export.images.multilayer import PassSelection
 from rppm_addon.scene.images import encode_srgb
 
 
@@ -104,7 +105,7 @@ def test_files_are_read_again_when_they_may_have_changed(scene, tmp_path, monkey
     assert export(scene).images[0] is export(scene).images[0]
     kept_images.unregister()
     kept_images.register()
-    assert kept_images.kept(image) is None
+    assert kept_images.kept(image, PassSelection()) is None
 
 
 def test_an_image_used_twice_is_exported_once(scene):

@@ -36,12 +36,20 @@ def _pixels(width: int, height: int, seed: int) -> np.ndarray:
 
 @cache
 def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
-    """A small picture file: png, opaque (png without alpha), gray (png), deep (png with 16 bits), exr."""
-    path = folder() / f"{kind}_{width}x{height}{'.exr' if kind == 'exr' else '.png'}"
+    """A small picture file: png, opaque (png without alpha), gray (png), deep (png with 16 bits), exr, multilayer
+    (exr)."""
+    path = folder() / f"{kind}_{width}x{height}{'.exr' if kind in {'exr', 'multilayer'} else '.png'}"
     pixels = _pixels(width, height, 5)
     if kind == "premultiplied":
         pixels[..., :3] *= pixels[..., 3:]
-    if kind == "exr":
+    if kind == "multilayer":
+        layer = {f"View.Combined.{c}": np.float32(3.0 * pixels[..., k]) for k, c in enumerate("RGB")}
+        header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+        header["BlenderMultiChannel"] = "Blender V2.55.1 and newer"
+        depth = {"View.Depth.Z": np.float32(pixels[..., 3])}
+        parts = [OpenEXR.Part(dict(header), layer, "View.Combined"), OpenEXR.Part(dict(header), depth, "View.Depth")]
+        OpenEXR.File(parts).write(str(path))
+    elif kind == "exr":
         planes = {c: np.float32(3.0 * pixels[..., k]) for k, c in enumerate("RGB")}
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
         OpenEXR.File(header, planes).write(str(path))
@@ -107,6 +115,8 @@ _rounds = "Cycles rounds to half floats before it multiplies by alpha"
 value(GROUP, "color space Filmic sRGB, alpha", texture(space="Filmic sRGB"), 0.1, 0.5, reason=_rounds)
 for _space in ("Linear Rec.709", "Non-Color", "sRGB", "ACEScg"):
     value(GROUP, f"float, {_space}", texture(space=_space, kind="exr"), 0.3, 0.5)
+value(GROUP, "multilayer", texture(kind="multilayer"), 0.3, 0.5)
+value(GROUP, "multilayer, ACEScg", texture(kind="multilayer", space="ACEScg"), 0.3, 0.5)
 value(GROUP, "16 bits, gray", texture(kind="deep"))
 value(GROUP, "8 bits, gray", texture(kind="gray"))
 for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"):

@@ -39,6 +39,7 @@ def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple
     environment, suns = _environment(world, context) if context.use_environment else (World(), [])
     mist = world.mist_settings
     environment.mist = Mist(mist.start, mist.depth, _EXPONENTS[mist.falloff])
+    environment.ambient_occlusion_distance = world.light_settings.distance
     for light in (environment, *suns):
         light.light_group = light_group_of(world)
         light.visibility, light.max_bounces = _visibility_of(world), max_bounces_of(world)
