@@ -5,6 +5,7 @@ import bpy
 
 from ....scene import Light, Scene
 from ..context import ExportContext
+from ..images.color_spaces import working_space
 from ..instances.assets import export_asset_names
 from ..instances.objects import ObjectExporter
 from ..instances.placements import Placed
@@ -27,6 +28,7 @@ def fill_scene(
     scene.lights = [*placed.lights, *suns]
     scene.images = list(context.images.images)
     scene.exposure = export_exposure(source)
+    scene.working_space = working_space().name
     scene.dicing_rate = export_dicing_rate(source, context.viewport)
     scene.cubemap_center = export_cubemap_center(depsgraph)
     scene.asset_names = export_asset_names(depsgraph, scene.settings)
