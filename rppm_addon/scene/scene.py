@@ -33,6 +33,8 @@ class Scene:
     settings: RenderSettings = field(default_factory=RenderSettings)
     exposure: float = field(default=1.0, metadata=declared(minimum=0.0, maximum=1e12))
     """Factor on every radiance of the film (Cycles' film exposure)."""
+    pass_alpha_threshold: float = field(default=0.5, metadata=declared(minimum=0.0, maximum=1.0))
+    """Alpha of a surface from which on passes that show the first surface show it; 0 is any."""
     working_space: str = field(default=REC709.name, metadata=declared(choices=tuple(WORKING_SPACES)))
     """Name of the linear space of all colors."""
     dicing_rate: float = field(default=1.0, metadata=declared(minimum=1e-6))

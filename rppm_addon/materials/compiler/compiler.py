@@ -61,13 +61,14 @@ class _Compiler:
         aovs: Sequence[RenderPass],
         abbe_number: float | None,
         *,
+        corrects_bump: bool,
         on_round_shapes: bool,
         traces_rays: bool,
         space: WorkingSpace,
     ) -> None:
         self._graph = graph
         self._luminance = LUMINANCE if space is REC709 else tuple(space.luminance.tolist())
-        self._on_round_shapes = on_round_shapes
+        self._corrects_bump, self._on_round_shapes = corrects_bump, on_round_shapes
         self._abbe_number = abbe_number
         self._traces_rays = traces_rays
         self._aovs = aovs
@@ -82,6 +83,8 @@ class _Compiler:
     def compile(self) -> CompiledGraph:
         scope = _Scope(ray_level=self._rays.of_normal)
         text = '#include "materials/round_shapes.glsl"\n' if self._on_round_shapes else ""
+        if not self._corrects_bump:
+            text += '#include "materials/uncorrected_bump.glsl"\n'
         if self._abbe_number is not None and disperses(self._graph):
             text += '#include "materials/dispersion.glsl"\n'
             place = self._constants.place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
@@ -341,23 +344,30 @@ def compile_graph(
     aovs: Sequence[RenderPass] = (),
     abbe_number: float | None = None,
     on_round_shapes: bool = False,
+    corrects_bump: bool = True,
     traces_rays: bool = True,
     space: WorkingSpace = REC709,
 ) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
     ``abbe_number``: by which its glass disperses light, None where it does not; ``on_round_shapes``: whether it is on
-    strands or points; ``traces_rays``: whether nodes may, which those of worlds and lights do not;
-    ``space``: of its colors.
+    strands or points; ``corrects_bump``: as Material has it; ``traces_rays``:
+    whether nodes may, which those of worlds and lights do not; ``space``: of its colors.
 
     Raises GraphError when nodes, options or links are unknown.
     """
     compiler = _Compiler(
-        graph, aovs, abbe_number, on_round_shapes=on_round_shapes, traces_rays=traces_rays, space=space
+        graph,
+        aovs,
+        abbe_number,
+        corrects_bump=corrects_bump,
+        on_round_shapes=on_round_shapes,
+        traces_rays=traces_rays,
+        space=space,
     )
     return compiler.compile()
 
 
 def compile_displacement(graph: NodeGraph, space: WorkingSpace = REC709) -> CompiledGraph:
     """The GLSL of what moves vertices, ``material_displacement``, and its constants. Raises as compile_graph does."""
-    compiler = _Compiler(graph, (), None, on_round_shapes=False, traces_rays=False, space=space)
+    compiler = _Compiler(graph, (), None, corrects_bump=True, on_round_shapes=False, traces_rays=False, space=space)
     return compiler.compile_displacement()

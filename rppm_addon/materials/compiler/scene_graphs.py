@@ -63,7 +63,12 @@ class SceneGraphs:
         aovs, round_shapes = aov_passes(self._scene.settings.aovs), material.on_round_shapes
         try:
             compiled = compile_graph(
-                material.graph, aovs, material.abbe_number, round_shapes, space=self._scene.color_space
+                material.graph,
+                aovs,
+                material.abbe_number,
+                round_shapes,
+                material.corrects_bump,
+                space=self._scene.color_space,
             )
             emission = emits(material.graph)
         except GraphError as error:

@@ -295,6 +295,9 @@ void main() {
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(builder.shading);
+#ifdef UNCORRECTED_BUMP
+    builder.closure.shading_normal = builder.closure.diffuse_normal;  // so that its slopes shadow nothing
+#endif
     builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
     make_usable(builder.closure);
     store(index, builder.closure);

@@ -87,7 +87,7 @@ WITHOUT_BEARING = {
     + " custom_filepath custom_shader custom_mode custom_bytecode custom_bytecode_hash cycles_custom",
     "CameraDOFSettings": "",
     "ViewLayer": """
-        pass_alpha_threshold eevee active_aov active_aov_index active_lightgroup active_lightgroup_index
+        eevee active_aov active_aov_index active_lightgroup active_lightgroup_index
         use_pass_cryptomatte_accurate use_ao use_strand use_volumes use_grease_pencil
         active_layer_collection has_export_collections use_freestyle freestyle_settings
     """,
@@ -114,7 +114,7 @@ WITHOUT_BEARING = {
     """,
     "world.cycles_visibility": "",
     "material.cycles": """
-        emission_sampling use_bump_map_correction volume_sampling volume_interpolation volume_step_rate
+        emission_sampling volume_sampling volume_interpolation volume_step_rate
     """,
     "scene.cycles": f"{_SAMPLING_OF_CYCLES} {_CYCLES_TRADES_TRUTH_FOR_NOISE} {_OF_WHAT_IS_NAMED}",
     "scene.cycles_curves": "subdivisions",

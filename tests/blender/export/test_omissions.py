@@ -58,9 +58,14 @@ def look_around_with_both_eyes(scene):
     scene.camera.data.stereo.use_spherical_stereo = True
 
 
+def catch_shadows(scene):
+    the(scene, "MESH").is_shadow_catcher = True
+
+
 USES = {
     "Adaptive Subdivision": subdivide,
     "Rolling Shutter": roll,
+    "Shadow Catcher": catch_shadows,
     "Spherical Stereo": look_around_with_both_eyes,
     "Transparent Glass": see_through,
 }

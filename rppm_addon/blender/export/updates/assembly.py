@@ -28,6 +28,7 @@ def fill_scene(
     scene.lights = [*placed.lights, *suns]
     scene.images = list(context.images.images)
     scene.exposure = export_exposure(source)
+    scene.pass_alpha_threshold = depsgraph.view_layer_eval.pass_alpha_threshold
     scene.working_space = working_space().name
     scene.dicing_rate = export_dicing_rate(source, context.viewport)
     scene.cubemap_center = export_cubemap_center(depsgraph)

@@ -15,7 +15,8 @@ SHOWN = {
     "ACEScg": (
         "Image Texture: as it comes", "Image Texture: alpha PREMUL, both outputs", "Image Texture: float, sRGB",
         "Image Texture: color space ACEScg", "Colors: RGB to BW", "Colors: color as a number",
-        "Blackbody: 800 to 9000 K", "Wavelength: 380 to 720 nm", "Color Attribute: named", "Attribute: Color of BYTE_COLOR by POINT",
+        "Blackbody: 800 to 9000 K", "Wavelength: 380 to 720 nm", "Color Attribute: named",
+        "Attribute: Color of BYTE_COLOR by POINT",
         "Sky Texture: MULTIPLE_SCATTERING, sun", "Sky Texture: PREETHAM", "Point Light: temperature",
         "Principled: thin film",
     ),
