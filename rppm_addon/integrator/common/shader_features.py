@@ -31,6 +31,8 @@ class ShaderFeatures:
     """Whether any kind of caustics is left out."""
     clamps_light: bool = False
     """Whether light that paths bring has a limit."""
+    filters_glossy: bool = False
+    """Whether blurred bounces blur the lobes that they see."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -47,6 +49,7 @@ class ShaderFeatures:
             or any(asks_for_bounces_by_type(material.graph) for material in scene.materials),
             scene.settings.dropped_caustics != 0,
             scene.settings.sample_clamp_direct > 0.0 or scene.settings.sample_clamp_indirect > 0.0,
+            scene.settings.blur_glossy > 0.0,
         )
 
     @property
@@ -61,5 +64,6 @@ class ShaderFeatures:
             "COUNTS_BOUNCES": self.counts_bounces,
             "DROPS_CAUSTICS": self.drops_caustics,
             "CLAMPS_LIGHT": self.clamps_light,
+            "FILTERS_GLOSSY": self.filters_glossy,
         }
         return {name: 1 for name, has in macros.items() if has}

@@ -4,7 +4,8 @@
 from .acceleration import CUBEMAP_COSTS, AccelerationStructure, DensityEstimation, FirstCameraHits, FirstPhotonHits
 from .denoising import DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
 from .film import PixelFilter
-from .light_paths import MOST_COUNTED_BOUNCES, MOST_SEGMENTS, CausticKind, DirectLight
+from .light_filters import CausticKind
+from .light_paths import MOST_COUNTED_BOUNCES, MOST_SEGMENTS, DirectLight
 from .photons import MOST_PHOTONS
 from .render_settings import RenderSettings
 

@@ -44,7 +44,7 @@ debug_use_cpu_sse42 debug_bvh_layout debug_use_cuda_adaptive_compile debug_use_o
 debug_use_hip_adaptive_compile debug_use_metal_adaptive_compile
 """
 _CYCLES_TRADES_TRUTH_FOR_NOISE = """
-caustics_reflective caustics_refractive blur_glossy sample_clamp_direct sample_clamp_indirect use_fast_gi
+caustics_reflective caustics_refractive  sample_clamp_direct sample_clamp_indirect use_fast_gi
 fast_gi_method ao_bounces ao_bounces_render diffuse_bounces glossy_bounces transmission_bounces
 """
 _OF_WHAT_IS_NAMED = """

@@ -28,6 +28,7 @@ SHARED = {
             "sample_clamp_indirect",
             "caustics_reflective",
             "caustics_refractive",
+            "blur_glossy",
         )
     },
     **{
