@@ -15,6 +15,7 @@ import numpy as np
 
 from .scene.common import whole_files
 from .scene.common.declared import declared
+from .scene.common.working_space import REC709, WorkingSpace
 from .scene.errors import RppmError, SceneError
 from .scene.images import encode_srgb
 from .scene.passes import COMBINED, NOISY_IMAGE, PASSES, RenderPass
@@ -79,11 +80,11 @@ def write_exr(
     Args:
         path: the file; its folder is made. The file is written beside and renamed, so that a
             reader never sees half of it.
-        combined: (H, W, 4), scene-linear Rec.709, premultiplied alpha.
+        combined: (H, W, 4), scene-linear, premultiplied alpha.
         layers: (H, W) or (H, W, channels) arrays by the name of a pass (scene/passes.py), or another one.
         metadata: stored as text attributes ``rppm.NAME``.
         placement: where a cropped picture lies in its frame; None is the whole frame.
-        attributes: text attributes by their own names.
+        attributes: text attributes by their own names; colorInteropID says of which space the colors are.
         passes: those that layers are named after.
 
     Raises:
@@ -157,7 +158,7 @@ def _header(
         "compression": OpenEXR.ZIP_COMPRESSION,
         "type": OpenEXR.scanlineimage,
         **(placement or Placement(width, height)).windows(width, height),
-        "colorInteropID": "lin_rec709_scene",
+        "colorInteropID": REC709.interop_id,
         **(attributes or {}),
         **{f"rppm.{name}": str(value) for name, value in (metadata or {}).items()},
     }
@@ -224,11 +225,12 @@ def read_exr(path: str | Path) -> ExrPicture:
     )
 
 
-def standard_view(combined: np.ndarray) -> np.ndarray:
+def standard_view(combined: np.ndarray, space: WorkingSpace = REC709) -> np.ndarray:
     """The picture as Blender's Standard view shows it on an sRGB display.
 
     Args:
-        combined: (H, W, 3 or 4) scene-linear Rec.709; alpha is premultiplied.
+        combined: (H, W, 3 or 4) scene-linear; alpha is premultiplied.
+        space: of its colors.
 
     Returns:
         uint8 of the same shape: clipped at 1, sRGB transfer curve, alpha no longer premultiplied.
@@ -237,7 +239,7 @@ def standard_view(combined: np.ndarray) -> np.ndarray:
     alpha = combined[..., 3:].clip(0.0, 1.0)
     if alpha.shape[-1]:
         color = np.divide(color, alpha, out=color.copy(), where=(alpha > 0.0) & (alpha < 1.0))
-    color = color.clip(0.0, 1.0)
+    color = space.to_rec709(color).clip(0.0, 1.0)
     return np.rint(np.concatenate([encode_srgb(color), alpha], axis=-1) * 255.0).astype(np.uint8)
 
 

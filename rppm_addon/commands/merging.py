@@ -13,6 +13,7 @@ from ..denoising.denoiser import Denoiser
 from ..denoising.places import library_places
 from ..integrator.film.film import exposed
 from ..pictures import FilePicture, PictureName, refuse_spoiled, standard_view, write_multilayer_exr
+from ..scene.common.working_space import space_of
 from ..scene.errors import CheckpointError
 from ..scene.storage.fingerprint import settings_of_plain
 from ..session.checkpoints.checkpoint_file import CheckpointSummary, StillRender, read_checkpoint, read_summary
@@ -74,7 +75,8 @@ class MergedStill:
     def write_png(self, path: Path) -> None:
         """Write it as rppm render does. Raises PictureError or BlenderError."""
         if not self.render.source.get("blend"):
-            write_png(path, standard_view(self.frame.combined))
+            space = space_of(self.render.attributes.get("colorInteropID", ""))
+            write_png(path, standard_view(self.frame.combined, space))
             return
         from .blend_files.blend_file import BlendRequest, save_view
 

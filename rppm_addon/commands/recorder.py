@@ -143,7 +143,7 @@ class RenderRecorder(RenderObserver):
                 place, attributes = placement_of(scene.camera), attributes_of(scene)
                 write_frame(path, result.frame, scene.settings, place, self.metadata, attributes)
             elif self._write_png_file:
-                write_png(path, standard_view(result.frame.combined))
+                write_png(path, standard_view(result.frame.combined, scene.color_space))
         self.write_part()
 
     def write_part(self) -> None:

@@ -2,7 +2,7 @@
 """Emission of node graphs that belong to no surface: worlds, lights and volumes."""
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,9 +112,9 @@ class GraphEvaluator(BufferSet):
         ray_length: float,
         scene: Scene,
         light_surface: LightSurface | None = None,
-    ) -> np.ndarray:
-        """(height, width, 3) float32 emission in the directions of an equirectangular map, or of a light over its map,
-        row 0 at the bottom.
+    ) -> Iterator[np.ndarray]:
+        """Bands of (rows, width, 3) float32 emission in the directions of an equirectangular map, or of a light over
+        its map, ``height`` rows in all, from the lowest on.
 
         text: the compiled graph; first_constant: where its constants start in the buffer MaterialData.
         """
@@ -134,7 +134,6 @@ class GraphEvaluator(BufferSet):
         if light_surface is not None:
             self._instance.upload(np.atleast_1d(light_surface.instance))
             bound |= {"ShadingInstances": self._instance.buffer} if "ShadingInstances" in bound else {}
-        parts = []
         for first_row in range(0, height, rows):
             count = width * min(rows, height - first_row)
             parameters = {
@@ -147,5 +146,5 @@ class GraphEvaluator(BufferSet):
                 **light_parameters,
             }  # fmt: skip
             program.run(count, bound, parameters)
-            parts.append(self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3])
-        return np.nan_to_num(np.concatenate(parts), nan=0.0, posinf=0.0, neginf=0.0)
+            found = self._emissions.read(np.dtype("<f4"), 4 * count).reshape(-1, width, 4)[..., :3]
+            yield np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Materials and images in GPU buffers, as shaders/materials/ reads them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -200,16 +200,28 @@ class MaterialTables(BufferSet):
         Pixels are the directions of an equirectangular map, row 0 at the bottom; from_camera: as the camera sees it;
         ray_length: Ray Length of Light Path, meters; light_surface: whose nodes they are, with a map of another shape.
         """
+        return np.concatenate(list(self.evaluated(graph, width, height, from_camera, ray_length, light_surface)))
+
+    def evaluated(
+        self,
+        graph: NodeGraph,
+        width: int,
+        height: int,
+        from_camera: bool = False,
+        ray_length: float = 0.0,
+        light_surface: LightSurface | None = None,
+    ) -> Iterator[np.ndarray]:
+        """Bands of (rows, width, 3) float32 of what evaluate gives, from the lowest on."""
         entry, first = self._unattached[id(graph)]
         text, scene = entry.compiled.text, self._scene
         assert scene is not None  # which has the graph
         try:
-            return self._evaluator.run(
+            yield from self._evaluator.run(
                 text, first, self.blocks, width, height, from_camera, ray_length, scene, light_surface
             )
         except CompileError as error:
             scene.warn(f"{entry.owner}: the driver does not compile its nodes ({first_line(error)}); {NO_EFFECT}")
-            return np.zeros((height, width, 3), np.float32)
+            yield np.zeros((height, width, 3), np.float32)
 
 
 def _material_records(materials: list[Material], graphs: SceneGraphs, layout: ConstantLayout) -> np.ndarray:

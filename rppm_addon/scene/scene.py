@@ -10,6 +10,7 @@ import numpy as np
 from .camera import Camera
 from .common.declared import declared
 from .common.garbage import collector_paused
+from .common.working_space import REC709, WORKING_SPACES, WorkingSpace
 from .errors import SceneError
 from .images import Image
 from .lights import Light, World
@@ -36,6 +37,10 @@ class Scene:
     settings: RenderSettings = field(default_factory=RenderSettings)
     exposure: float = field(default=1.0, metadata=declared(minimum=0.0, maximum=1e12))
     """Factor on every radiance of the film (Cycles' film exposure)."""
+    pass_alpha_threshold: float = field(default=0.5, metadata=declared(minimum=0.0, maximum=1.0))
+    """Alpha of a surface from which on passes that show the first surface show it; 0 is any."""
+    working_space: str = field(default=REC709.name, metadata=declared(choices=tuple(WORKING_SPACES)))
+    """Name of the linear space of all colors."""
     dicing_rate: float = field(default=1.0, metadata=declared(minimum=1e-6))
     """Pixels that are the unit of Dicing.edge_length."""
     cubemap_center: np.ndarray | None = field(default=None, metadata=declared(3))
@@ -60,6 +65,11 @@ class Scene:
         if text not in self.warnings:
             self.warnings.append(text)
             log.warning(text)
+
+    @property
+    def color_space(self) -> WorkingSpace:
+        """The linear space of all colors."""
+        return WORKING_SPACES[self.working_space]
 
     @property
     def photon_count(self) -> int:

@@ -1,3 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CameraPath>
 #include <CameraPathFlags>
+
+// The least pdf of a path that no lobe has scattered.
+const float NO_PDF = 1e30;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first surface of a camera path, which the passes show. As in Cycles, surfaces that transmit more than half of the
-// light straight on are skipped.
-
-const float MOSTLY_TRANSPARENT = 0.5;
+// The first surface of a camera path, which the passes show. As in Cycles, surfaces whose alpha is below the Alpha
+// Threshold of the view layer are skipped.
 
 bool is_skipped(Closure closure) {
     vec3 transparent = closure.transparent;
-    return closure_hit(closure) && (transparent.r + transparent.g + transparent.b) / 3.0 > MOSTLY_TRANSPARENT;
+    return closure_hit(closure) && (transparent.r + transparent.g + transparent.b) / 3.0 > iteration.most_transparent;
 }
 
 // Whether a path still needs_surface for it.

@@ -6,8 +6,8 @@
 // lint: HAIR_LOBES=1
 // lint: ROUGHNESS_PASS=1
 // lint: ASHIKHMIN_LOBES=1
-// First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces that transmit more than
-// half of the light straight on are skipped, and depth is measured along the view axis, or in a panorama along the ray.
+// First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces below the
+// view layer's Alpha Threshold are skipped, and depth is measured along the view axis, or in a panorama along the ray.
 // Denoising Data is of the first surface that is not specular. Colors add up over all surfaces by their throughput.
 
 layout(local_size_x = 64) in;
@@ -42,7 +42,7 @@ readonly buffer ShadingInstances;
 readonly buffer Radiances;
 
 // Lobes up to this alpha, and what is specular by more than this fraction, denoisers see through. As in Cycles.
-const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75;
+const float SPECULAR_ALPHA = 0.075, MOSTLY_SPECULAR = 0.75, MOSTLY_TRANSPARENT = 0.5;
 const uint DENOISING_DATA = 1u << PASS_DENOISING_ALBEDO | 1u << PASS_DENOISING_NORMAL | 1u << PASS_DENOISING_DEPTH;
 const uint COLORS = 1u << PASS_DIFFUSE_COLOR | 1u << PASS_GLOSSY_COLOR | 1u << PASS_TRANSMISSION_COLOR;
 

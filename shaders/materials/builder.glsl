@@ -19,6 +19,7 @@ struct ClosureBuilder {
     int lobes;
     uint dropped_caustics;  // CausticKind of the lobes that the closure lacks, since a diffuse surface sees it
     bool is_bare;           // whether layers that reflect take no light from those below
+    float least_alpha;      // of microfacets, as Filter Glossy blurs what blurred bounces see
 };
 
 // The only one that another may take the place of.
@@ -46,7 +47,7 @@ void hold_lobe(inout ClosureBuilder builder, int k, MicrofacetLobe lobe) {
 
 ClosureBuilder closure_builder(vec3 viewer, vec3 geometric, vec3 shading, bool backfacing, float u_choice) {
     ClosureBuilder builder =
-        ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice, false, 0, 0u, false);
+        ClosureBuilder(empty_closure(), viewer, geometric, shading, backfacing, u_choice, false, 0, 0u, false, 0.0);
     builder.closure.diffuse_normal = pack_unit_vector(shading);
     return builder;
 }
@@ -147,6 +148,10 @@ MicrofacetLobe without_caustics(MicrofacetLobe lobe, uint dropped) {
 // A closure holds three lobes; of the third and any further one, one is chosen by its albedo and
 // stands for both, which leaves the mean as it is.
 void add_lobe(inout ClosureBuilder builder, MicrofacetLobe lobe) {
+    if (builder.least_alpha > lobe.alpha && lobe_has_facets(lobe.kind)) {
+        lobe.alpha = builder.least_alpha;
+        lobe.anisotropy = ISOTROPIC;
+    }
     if (builder.dropped_caustics != 0u) {
         lobe = without_caustics(lobe, builder.dropped_caustics);
         if (lobe.kind == LOBE_NONE) return;

@@ -4,6 +4,7 @@
 
 #include "materials/builder.glsl"
 #include "materials/albedo_tables.glsl"
+#include "materials/working_space.glsl"
 #include <DispersionTable>
 #define DISPERSES
 
@@ -25,7 +26,7 @@ void take_wavelength(float u, bool white) {
                         albedo_tables[at + 4 * k + 3]);
     vec4 value = mix(knots[0], knots[1], f);
     path_is_white = white;
-    if (white) wavelength_color = value.rgb;
+    if (white) wavelength_color = from_rec709(value.rgb);
     wavelength_shift = value.a;
 }
 

@@ -4,6 +4,7 @@
 
 #include "common/bsdf/fresnel.glsl"
 #include "common/constants.glsl"
+#include "materials/working_space.glsl"
 
 // Amplitude coefficients of reflection from an index to another, s and p; 1 beyond the critical angle.
 vec2 reflection_coefficients(float cosine, float from, float to, out float cosine_beyond) {
@@ -51,7 +52,7 @@ vec3 metal_reflectance(FilmMetal metal, float cosine, float from, bool parallel,
 }
 
 // Fourier transform of the eye's sensitivities at an optical path difference in meters: the paper's sum of
-// Gaussians for X, Y and Z, to linear Rec.709. shift: of the phases of the channels.
+// Gaussians for X, Y and Z, to the working space. shift: of the phases of the channels.
 vec3 interference_color(float path_difference, vec3 shift) {
     float phase = 2.0 * PI * path_difference;
     const vec3 height = vec3(5.4856e-13, 4.4201e-13, 5.2481e-13), place = vec3(1.6810e6, 1.7953e6, 2.2084e6),
@@ -62,10 +63,8 @@ vec3 interference_color(float path_difference, vec3 shift) {
     xyz[0].x += red * cos(2.2399e6 * phase);
     xyz[1].x += red * sin(2.2399e6 * phase);
     // Without a difference all channels are 1: what does not interfere is white.
-    const mat3 to_rec709 =
-        mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252);
-    const vec3 white = 1.0685e-7 * vec3(1.2048843, 0.9483008, 0.9088427);
-    return (to_rec709 * xyz[0] * cos(shift) - to_rec709 * xyz[1] * sin(shift)) / white;
+    vec3 white = from_rec709(1.0685e-7 * vec3(1.2048843, 0.9483008, 0.9088427));
+    return (from_xyz(xyz[0]) * cos(shift) - from_xyz(xyz[1]) * sin(shift)) / white;
 }
 
 // thickness in nanometers; indices before the film, of it and behind it; metal: what is behind it, if it is one.

@@ -209,6 +209,9 @@ def scene_digest() -> str:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of members that Blender 6 will not have
         _add_data(digest)
+    space = getattr(getattr(bpy.data, "colorspace", None), "working_space", "Linear Rec.709")
+    if space != "Linear Rec.709":
+        digest.text("working space", space)
     return digest.hash.hexdigest()[:32]
 
 

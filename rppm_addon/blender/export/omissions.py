@@ -46,6 +46,12 @@ OF_OBJECTS = (
         ("cycles.use_adaptive_subdivision", "modifiers"),
         lambda source: adaptive_modifier(source) is not None,
     ),
+    Omission(
+        "Shadow Catcher",
+        "light that other objects reflect onto it is left out: shadows next to bright objects are darker",
+        ("is_shadow_catcher",),
+        lambda source: source.is_shadow_catcher and source.type != "LIGHT",  # whose shadows on catchers it is about
+    ),
 )
 """By what an evaluated object uses."""
 

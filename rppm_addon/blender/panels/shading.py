@@ -53,6 +53,8 @@ class RPPM_PT_material_settings(RppmMaterialPanel, bpy.types.Panel):
         for name in ("displacement_method", "use_transparent_shadow"):
             if hasattr(material, name):
                 column.prop(material, name)
+        if hasattr(material, "cycles"):
+            column.prop(material.cycles, "use_bump_map_correction")
         column.prop(material.rppm, "use_dispersion")
         row = column.row()
         row.active = material.rppm.use_dispersion

@@ -24,6 +24,7 @@ class RPPM_PT_passes(RppmPanel, bpy.types.Panel):
         shown = (entry for entry in PASSES if entry.accumulation is not Accumulation.COVERAGE)
         for switch in dict.fromkeys(switch_of(context.view_layer, entry) for entry in shown):
             column.prop(*switch)
+        column.prop(context.view_layer, "pass_alpha_threshold")
 
 
 class RPPM_PT_passes_cryptomatte(RppmPanel, _blenders("ViewLayerCryptomattePanel"), bpy.types.Panel):

@@ -38,6 +38,8 @@ class ProgramLibrary:
         self._sources: dict[tuple, Source] = {}
         """Sources of programs that were expected, by path and inserts."""
         self._scene_defines: dict[str, object] = {}
+        self.graph_defines: dict[str, object] = {}
+        """Defines of the programs of node graphs, those with inserts, from now on: how they convert colors."""
         self.made = 0
         """Programs that were compiled or taken from the disk so far; asking again for one adds nothing."""
         self.started = 0
@@ -74,9 +76,8 @@ class ProgramLibrary:
         Raises ShaderError with file and line; CompileError where it is the driver that refuses, without
         ``inserts`` maybe not before the program is first run.
         """
-        return self._compute(
-            path, dict(defines or {}) if inserts else self._defines([path], defines), dict(inserts or {})
-        )
+        given = self.graph_defines | dict(defines or {}) if inserts else self._defines([path], defines)
+        return self._compute(path, given, dict(inserts or {}))
 
     def has_stand_in(self, path: str, inserts: Mapping[str, str]) -> bool:
         """Whether a compute program that something can stand in for is still to be compiled, and is, in the background.
@@ -91,7 +92,7 @@ class ProgramLibrary:
 
     def _expect(self, path: str, inserts: Mapping[str, str], needed: bool) -> bool:
         compiler = self._maker.compiler
-        if compiler is None or (path, (), tuple(sorted(inserts.items()))) in self._programs:
+        if compiler is None or _key(path, self.graph_defines, inserts) in self._programs:
             return False
         source = self._expanded(path, inserts)
         if not compiler.knows(source):
@@ -102,9 +103,9 @@ class ProgramLibrary:
 
     def _expanded(self, path: str, inserts: Mapping[str, str]) -> Source:
         """The same object for the same text, so that asking again costs nothing."""
-        key = (path, *sorted(inserts.items()))
+        key = _key(path, self.graph_defines, inserts)
         if key not in self._sources:
-            self._sources[key] = expand(path, {}, dict(inserts), self._reads_texels)
+            self._sources[key] = expand(path, dict(self.graph_defines), dict(inserts), self._reads_texels)
         return self._sources[key]
 
     def compilation_work(self) -> CompilationWork:
@@ -155,7 +156,7 @@ class ProgramLibrary:
                 program.with_large = functools.partial(self._compute, path, defines, inserts)
             return program
 
-        return self._get((path, *(tuple(sorted(given.items())) for given in (defines, inserts)), *sorted(large)), make)
+        return self._get((*_key(path, defines, inserts), *sorted(large)), make)
 
     def _draw(self, vertex: str, fragment: str, defines: dict, large: frozenset[str] = frozenset()) -> DrawProgram:
         def make() -> DrawProgram:
@@ -179,6 +180,11 @@ class ProgramLibrary:
         for program in self._programs.values():
             program.release()
         self._programs.clear()
+
+
+def _key(path: str, defines: Mapping[str, object], inserts: Mapping[str, str]) -> tuple:
+    """Key of a compute program."""
+    return path, tuple(sorted(defines.items())), tuple(sorted(inserts.items()))
 
 
 def _name(path: str) -> str:

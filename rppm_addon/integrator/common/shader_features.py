@@ -40,6 +40,8 @@ class ShaderFeatures:
     """Whether the film's background shows behind clear glass."""
     shows_roughness: bool = False
     """Whether the pass Roughness is rendered."""
+    filters_glossy: bool = False
+    """Whether blurred bounces blur the lobes that they see."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -61,6 +63,7 @@ class ShaderFeatures:
             scene.camera.stereo is not None,
             scene.settings.film_transparent and scene.settings.film_transparent_glass,
             ROUGHNESS in scene.settings.rendered_passes,
+            scene.settings.blur_glossy > 0.0,
         )
 
     @property
@@ -79,5 +82,6 @@ class ShaderFeatures:
             "SPHERICAL_STEREO": self.has_spherical_stereo,
             "TRANSPARENT_GLASS": self.has_transparent_glass,
             "ROUGHNESS_PASS": self.shows_roughness,
+            "FILTERS_GLOSSY": self.filters_glossy,
         }
         return {name: 1 for name, has in macros.items() if has}

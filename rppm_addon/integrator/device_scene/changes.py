@@ -32,8 +32,9 @@ class Changes:
 
 
 def changes_between(before: Scene | None, after: Scene) -> Changes:
-    """Members are compared by identity, the settings by value; before None: all has changed."""
-    if before is None:
+    """Members are compared by identity, the settings by value; all has changed where before is None, or where the
+    working space is another."""
+    if before is None or before.working_space != after.working_space:
         return Changes(True, True, True, True, True, True)
     images = not same_members(before.images, after.images)
     camera = before.camera is not after.camera

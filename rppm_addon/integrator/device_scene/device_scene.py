@@ -36,7 +36,7 @@ class DeviceScene:
 
     def __init__(self, context: Context, library: ProgramLibrary, timers: StageTimers) -> None:
         self._timers = timers
-        self._pacing = library.pacing
+        self._library = library
         self.geometry = Geometry(context, library)
         self.materials = MaterialTables(context, library)
         self.displacement = Displacement(context, library)
@@ -102,6 +102,7 @@ class DeviceScene:
         scene = self.centering.centered(scene)
         before = self._uploaded_scene
         changes = changes_between(before, scene)
+        self._library.graph_defines = scene.color_space.defines
         self._take(scene)
         self._build_materials(changes)
         with self._collect_warnings("displacement") if changes.materials else contextlib.nullcontext():
@@ -113,7 +114,7 @@ class DeviceScene:
             changes = changes_between(before, scene)
             self._take(scene)
         if changes.geometry or changes.materials:
-            self._pacing.forget()
+            self._library.pacing.forget()
         changes.geometry |= self._motion.take(scene)
         self._build_parts(changes, scene.photon_count)
         self._build_acceleration(scene, changes, center_tolerance)
@@ -125,6 +126,7 @@ class DeviceScene:
         """Take a scene and build the deep cubemap that rays need, to be looked at: nothing can be rendered. Raises as
         update does."""
         scene = self.centering.centered(scene)
+        self._library.graph_defines = scene.color_space.defines
         self._take(scene)
         self.materials.build(scene)
         scene = self.displacement.displaced(scene, self.materials, True)

@@ -4,6 +4,7 @@
 from collections.abc import Mapping
 
 import moderngl
+import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers.records import Record
@@ -47,6 +48,7 @@ ITERATION_PARAMETERS = Record(
     next_event="uint",
     has_round_shapes="uint",
     orthographic_camera="uint",
+    most_transparent="float",
     shrinkage="float",
     **RADIUS_PARAMETERS,
 )
@@ -55,7 +57,7 @@ ITERATION_PARAMETERS = Record(
 ``number``, ``number_in_film``, ``seed`` and ``direct_world_flux`` are those of Iteration. ``photon_flux`` is the mean
 flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
 shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, or members that the
-lights and the radii declare.
+lights and the radii declare. ``most_transparent`` is how much a surface may transmit that passes show.
 """
 
 
@@ -91,6 +93,7 @@ class IterationBlock(BufferSet):
             "next_event": settings.direct_light is DirectLight.RAYS,
             "has_round_shapes": geometry.has_round_shapes,
             "orthographic_camera": scene.camera.orthographic and scene.camera.panorama is None,
+            "most_transparent": 1.0 - scene.pass_alpha_threshold if scene.pass_alpha_threshold > 0.0 else np.inf,
             "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),
         }
         self._write(dict.fromkeys(RADIUS_PARAMETERS, 0.0))

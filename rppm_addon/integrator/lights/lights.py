@@ -39,6 +39,7 @@ LIGHT_PARAMETERS = {
     "light_count": "uint",
     "environment_width": "uint",
     "environment_height": "uint",
+    "environment_is_fine": "uint",
     "emissive_triangle_count": "uint",
     "gathers_lights": "uint",
     "world_selection": "float",
@@ -184,6 +185,11 @@ class Lights(BufferSet):
         lights.add_media(scene, materials.media.emissive.listed, geometry.placements)
         if not keep_world:
             self.environment.build(scene.world, scene.images, materials)
+            if self.environment.shown_width < self.environment.image_width:
+                scene.warn(
+                    f"The world's image is {self.environment.image_width} pixels wide, of which the device shows "
+                    f"{self.environment.shown_width}; save it smaller"
+                )
         self.world_visibility = scene.world.visibility
         lights.add_world(scene, self.environment, radius)
         shown_through = scene.lights if lights.has_world else []
@@ -234,6 +240,7 @@ class Lights(BufferSet):
             "light_count": len(self.table),
             "environment_width": self.environment.width,
             "environment_height": self.environment.height,
+            "environment_is_fine": self.environment.is_fine,
             "emissive_triangle_count": self.emitters.count,
             "gathers_lights": shadows_are_of_all(scene),
             "world_selection": float(lights.selection[kinds == LightShape.WORLD].sum()),

@@ -59,6 +59,10 @@ Record(
     ray_level="uint",
     ray_levels="uint",
     dropped_caustics="uint",
+    camera_least_pdf="uint",
+    filter_pdf_scale="float",
+    gathered_alpha="float",
+    specular_alpha="float",
 )
 
 
@@ -173,11 +177,15 @@ class Resolve(BufferSet):
             "world_origin": scene.world_offset,
             "seed": scene.settings.seed,
             "dropped_caustics": scene.settings.dropped_caustics,
+            "filter_pdf_scale": scene.settings.filter_pdf_scale,
+            "gathered_alpha": scene.settings.gathered_alpha,
+            "specular_alpha": scene.settings.specular_roughness**2,
             "attribute_count": self._surface_attributes.count,
             "camera_stride": CAMERA_PATH.size // 4,
             "camera_flags": CAMERA_PATH.offset("flags") // 4,
             "camera_straight_length": CAMERA_PATH.offset("straight_length") // 4,
             "camera_depth": CAMERA_PATH.offset("depth") // 4,
+            "camera_least_pdf": CAMERA_PATH.offset("least_pdf") // 4,
             "camera_bounce_counts": CAMERA_PATH.offset("bounce_counts") // 4,
             "photon_stride": PHOTON_PATH.size // 4,
             "photon_flags": PHOTON_PATH.offset("flags") // 4,

@@ -8,6 +8,7 @@ constants in a buffer, so graphs that differ in those only have the same text an
 from collections.abc import Sequence
 from typing import Any
 
+from ...scene.common.working_space import REC709, WorkingSpace
 from ...scene.meshes import SMOOTH_NORMALS, UNDISPLACED
 from ...scene.node_graphs import AovOutput, Link, NodeGraph, ShaderNode
 from ...scene.passes import PassKind, RenderPass
@@ -18,7 +19,7 @@ from ..traits.subsurface import has_subsurface
 from ..traits.transparency import asks_for_shadow_rays
 from .bump import Bump
 from .compiled_graph import CompiledGraph, GraphError, NodeRayCounts, Resource
-from .graph_constants import GraphConstants, read_constant, socket_constants
+from .graph_constants import LUMINANCE, GraphConstants, read_constant, socket_constants
 from .pieces import in_pieces
 from .ray_levels import RayLevels
 
@@ -60,11 +61,14 @@ class _Compiler:
         aovs: Sequence[RenderPass],
         abbe_number: float | None,
         *,
+        corrects_bump: bool,
         on_round_shapes: bool,
         traces_rays: bool,
+        space: WorkingSpace,
     ) -> None:
         self._graph = graph
-        self._on_round_shapes = on_round_shapes
+        self._luminance = LUMINANCE if space is REC709 else tuple(space.luminance.tolist())
+        self._corrects_bump, self._on_round_shapes = corrects_bump, on_round_shapes
         self._abbe_number = abbe_number
         self._traces_rays = traces_rays
         self._aovs = aovs
@@ -79,6 +83,8 @@ class _Compiler:
     def compile(self) -> CompiledGraph:
         scope = _Scope(ray_level=self._rays.of_normal)
         text = '#include "materials/round_shapes.glsl"\n' if self._on_round_shapes else ""
+        if not self._corrects_bump:
+            text += '#include "materials/uncorrected_bump.glsl"\n'
         if self._abbe_number is not None and disperses(self._graph):
             text += '#include "materials/dispersion.glsl"\n'
             place = self._constants.place((-1, "inverse_abbe_number"), [1.0 / max(self._abbe_number, 1.0)])
@@ -145,7 +151,7 @@ class _Compiler:
             return self._converted(scope, value, kind)
         node = ShaderNode("aov_output", output.name)
         name = "value" if kind is FLOAT else "color"
-        return read_constant(self._constants.append(socket_constants(node, name, value, kind)), kind)
+        return read_constant(self._constants.append(socket_constants(node, name, value, kind, self._luminance)), kind)
 
     def _number(self, index: int) -> int:
         """Names go by the order of use, so that nodes that nothing uses leave the text as it is."""
@@ -207,7 +213,7 @@ class _Compiler:
             return self._converted(scope, value, kind)
         if isinstance(value, str) and value in _IMPLICIT:
             return _IMPLICIT[value]
-        constants = socket_constants(self._graph.nodes[index], name, value, kind)
+        constants = socket_constants(self._graph.nodes[index], name, value, kind, self._luminance)
         return read_constant(self._constants.place((index, name), constants), kind)
 
     def _converted(self, scope: _Scope, link: Link, wanted: SocketType) -> str:
@@ -338,17 +344,30 @@ def compile_graph(
     aovs: Sequence[RenderPass] = (),
     abbe_number: float | None = None,
     on_round_shapes: bool = False,
+    corrects_bump: bool = True,
     traces_rays: bool = True,
+    space: WorkingSpace = REC709,
 ) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
     ``abbe_number``: by which its glass disperses light, None where it does not; ``on_round_shapes``: whether it is on
-    strands or points; ``traces_rays``: whether nodes may, which those of worlds and lights do not.
+    strands or points; ``corrects_bump``: as Material has it; ``traces_rays``:
+    whether nodes may, which those of worlds and lights do not; ``space``: of its colors.
 
     Raises GraphError when nodes, options or links are unknown.
     """
-    return _Compiler(graph, aovs, abbe_number, on_round_shapes=on_round_shapes, traces_rays=traces_rays).compile()
+    compiler = _Compiler(
+        graph,
+        aovs,
+        abbe_number,
+        corrects_bump=corrects_bump,
+        on_round_shapes=on_round_shapes,
+        traces_rays=traces_rays,
+        space=space,
+    )
+    return compiler.compile()
 
 
-def compile_displacement(graph: NodeGraph) -> CompiledGraph:
+def compile_displacement(graph: NodeGraph, space: WorkingSpace = REC709) -> CompiledGraph:
     """The GLSL of what moves vertices, ``material_displacement``, and its constants. Raises as compile_graph does."""
-    return _Compiler(graph, (), None, on_round_shapes=False, traces_rays=False).compile_displacement()
+    compiler = _Compiler(graph, (), None, corrects_bump=True, on_round_shapes=False, traces_rays=False, space=space)
+    return compiler.compile_displacement()

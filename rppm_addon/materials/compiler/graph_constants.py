@@ -45,8 +45,10 @@ def read_constant(place: int, kind: SocketType) -> str:
     return f"constant_float(first + {place}u)" if kind is FLOAT else f"constant_vec3(first + {place}u)"
 
 
-def socket_constants(node: ShaderNode, name: str, value: Any, kind: SocketType) -> list[float]:
-    """Return the constants of an unlinked socket: one for a FLOAT, else three.
+def socket_constants(
+    node: ShaderNode, name: str, value: Any, kind: SocketType, luminance: Sequence[float] = LUMINANCE
+) -> list[float]:
+    """Return the constants of an unlinked socket: one for a FLOAT, else three. luminance: weights of a color's.
 
     Raises GraphError for a value that is neither one number nor three.
     """
@@ -57,7 +59,7 @@ def socket_constants(node: ShaderNode, name: str, value: Any, kind: SocketType) 
     if len(numbers) not in (1, 3):
         raise GraphError(f'node "{node.name}" ({node.kind}): its {name} has {len(numbers)} numbers')
     if kind is FLOAT:
-        return numbers if len(numbers) == 1 else [finite(np.dot(LUMINANCE, numbers))]
+        return numbers if len(numbers) == 1 else [finite(np.dot(luminance, numbers))]
     return numbers * 3 if len(numbers) == 1 else numbers
 
 

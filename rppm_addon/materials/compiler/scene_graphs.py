@@ -62,7 +62,14 @@ class SceneGraphs:
     def _compile_surface(self, material: Material) -> None:
         aovs, round_shapes = aov_passes(self._scene.settings.aovs), material.on_round_shapes
         try:
-            compiled = compile_graph(material.graph, aovs, material.abbe_number, on_round_shapes=round_shapes)
+            compiled = compile_graph(
+                material.graph,
+                aovs,
+                material.abbe_number,
+                round_shapes,
+                material.corrects_bump,
+                space=self._scene.color_space,
+            )
             emission = emits(material.graph)
         except GraphError as error:
             self._scene.warn(f'Material "{material.name}": {error}; it is gray')
@@ -78,7 +85,7 @@ class SceneGraphs:
             if material.graph.displacement is None:
                 continue
             try:
-                yield index, compile_displacement(material.graph)
+                yield index, compile_displacement(material.graph, self._scene.color_space)
             except GraphError as error:
                 self._scene.warn(f'Material "{material.name}": {error}; it displaces nothing')
 
@@ -102,7 +109,7 @@ class SceneGraphs:
 
     def _compile_light(self, graph: NodeGraph, owner: str) -> CompiledGraph:
         try:
-            return compile_graph(graph, traces_rays=False)
+            return compile_graph(graph, traces_rays=False, space=self._scene.color_space)
         except GraphError as error:
             self._scene.warn(f"{owner}: {error}; {NO_EFFECT}")
             return CompiledGraph(NEUTRAL_TEXT)

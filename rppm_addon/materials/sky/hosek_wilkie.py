@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...scene.common.working_space import REC709, WorkingSpace
 from ...scene.sky import Sky
 from ..colorimetry import XYZ_TO_REC709
 
@@ -63,8 +64,8 @@ def terms(shape: np.ndarray, cosine: np.ndarray, to_sun: np.ndarray) -> np.ndarr
     return (1.0 + a * np.exp(b / (cosine + 0.01)))[:, None] * parts
 
 
-def radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
-    """(n, 3) float32 radiance in Rec.709 in unit directions (n, 3)."""
+def radiance(sky: Sky, directions: np.ndarray, space: WorkingSpace = REC709) -> np.ndarray:
+    """(n, 3) float32 radiance in a working space in unit directions (n, 3)."""
     directions = np.asarray(directions, np.float64)
     sun = sky.direction_to_sun()
     if sun[2] < 0.0:  # Cycles leaves a sun that has set on the horizon.
@@ -75,4 +76,4 @@ def radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
     elevation = np.arcsin(np.clip(sun[2], -1.0, 1.0))
     rows = coefficients(elevation, sky.turbidity, sky.ground_albedo)
     xyz = np.stack([terms(row[:4], cosine, to_sun) @ row[4:] for row in rows], axis=1)
-    return np.maximum(xyz @ XYZ_TO_REC709.T, 0.0).astype(np.float32)
+    return np.maximum(space.from_rec709(xyz @ XYZ_TO_REC709.T), 0.0).astype(np.float32)

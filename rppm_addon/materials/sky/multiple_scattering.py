@@ -10,6 +10,7 @@ a city's aerosols by Hess 1998). Lengths here are in kilometers.
 
 import numpy as np
 
+from ...scene.common.working_space import REC709, WorkingSpace
 from ...scene.sky import Sky
 from ..colorimetry import XYZ_TO_REC709
 from .table import COLUMNS, ROWS, azimuths_from_sun, mirrored, row_elevations
@@ -104,8 +105,8 @@ def _transmittance_table(sky: Sky) -> np.ndarray:
     return transmittance(radius, np.linspace(-1.0, 1.0, COSINES)[None, :], sky).astype(np.float32)
 
 
-def sky_table(sky: Sky) -> np.ndarray:
-    """(ROWS, COLUMNS, 3) float32 radiance in Rec.709; sky_table.look_up reads it."""
+def sky_table(sky: Sky, space: WorkingSpace = REC709) -> np.ndarray:
+    """(ROWS, COLUMNS, 3) float32 radiance in a working space; sky_table.look_up reads it."""
     sun_light = _transmittance_table(sky)
     elevation, azimuth = row_elevations(0.5), azimuths_from_sun(0.5)
     up, along = np.sin(elevation), np.cos(elevation)
@@ -160,7 +161,7 @@ def sky_table(sky: Sky) -> np.ndarray:
         both = air + aerosol
         radiance += day * (both * SCATTERED_AGAIN.astype(np.float32))
         radiance += np.maximum(cosine, 0.0)[..., None] * on_ground * (both * from_ground[:, None].astype(np.float32))
-    return mirrored(np.maximum(radiance @ TO_REC709.astype(np.float32), 0.0))
+    return mirrored(np.maximum(space.from_rec709(radiance @ TO_REC709.astype(np.float32)), 0.0))
 
 
 def sun_irradiance(sky: Sky, elevation: float) -> np.ndarray:

@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from ...scene.common.working_space import REC709, WorkingSpace
 from ...scene.sky import Sky
 from ..colorimetry import XYZ_TO_REC709
 
@@ -36,8 +37,8 @@ _ZENITH = np.array(
 )
 
 
-def radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
-    """(n, 3) float32 radiance in Rec.709 in unit directions (n, 3)."""
+def radiance(sky: Sky, directions: np.ndarray, space: WorkingSpace = REC709) -> np.ndarray:
+    """(n, 3) float32 radiance in a working space in unit directions (n, 3)."""
     directions = np.asarray(directions, np.float64)
     sun = sky.direction_to_sun()
     sun_angle = np.arccos(np.clip(sun[2], -1.0, 1.0))
@@ -52,7 +53,7 @@ def radiance(sky: Sky, directions: np.ndarray) -> np.ndarray:
     values = zenith * _perez(turbidity, cosine, to_sun) / _perez(turbidity, np.ones(1), np.array([sun_angle]))
     big_y, x, y = values.T
     xyz = np.stack([x / y * big_y, big_y, (1.0 - x - y) / y * big_y], axis=1)
-    return np.maximum(xyz @ XYZ_TO_REC709.T, 0.0).astype(np.float32)
+    return np.maximum(space.from_rec709(xyz @ XYZ_TO_REC709.T), 0.0).astype(np.float32)
 
 
 def _perez(turbidity: float, cosine: np.ndarray, to_sun: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ the sun is a black body, Rayleigh's law holds without dispersion, aerosols are g
 
 import numpy as np
 
+from ...scene.common.working_space import REC709, WorkingSpace
 from ...scene.sky import Sky
 from ..colorimetry import COLOR_MATCHING, WAVELENGTHS, XYZ_TO_REC709, black_body
 from .table import ROWS, azimuths_from_sun, mirrored, row_elevations
@@ -101,17 +102,18 @@ def _depths(radius: np.ndarray, cosine: np.ndarray, sky: Sky) -> np.ndarray:
     return np.moveaxis(depths * length, 0, -1)
 
 
-def sky_table(sky: Sky) -> np.ndarray:
-    """(ROWS, COLUMNS, 3) float32 radiance in Rec.709; sky_table.look_up reads it."""
+def sky_table(sky: Sky, space: WorkingSpace = REC709) -> np.ndarray:
+    """(ROWS, COLUMNS, 3) float32 radiance in a working space; sky_table.look_up reads it."""
     elevation = row_elevations(0.0)
     upper = elevation[ROWS // 2 :]
-    table = mirrored(_upper_half(sky, upper))
+    table = mirrored(np.maximum(space.from_rec709(_upper_half(sky, upper)), 0.0))
     # Below the horizon Cycles lets the horizon's color fade: there is no ground.
     fade = np.maximum(1.0 + 2.5 * np.sin(elevation[: ROWS // 2]), 0.0) ** 3
     return np.concatenate([fade[:, None, None].astype(np.float32) * table[0], table])
 
 
 def _upper_half(sky: Sky, elevation: np.ndarray) -> np.ndarray:
+    """(rows, COLUMNS / 2, 3) float32 radiance in Rec.709."""
     azimuth = azimuths_from_sun(0.0)
     up, along = np.sin(elevation), np.cos(elevation)
     radius = viewer_radius(sky)
@@ -149,7 +151,7 @@ def _upper_half(sky: Sky, elevation: np.ndarray) -> np.ndarray:
         air = (air_phase * (density[:, 0] * step)[:, None])[lit][:, None]
         aerosol = (aerosol_phase * (density[:, 1] * step)[:, None])[lit][:, None]
         radiance[lit] += air * left[:, :3] + aerosol * left[:, 3:]
-    return np.maximum(radiance, 0.0)
+    return radiance
 
 
 def sun_irradiance(sky: Sky, elevation: float) -> np.ndarray:

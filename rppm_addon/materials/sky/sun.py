@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...scene.common.working_space import REC709, WorkingSpace
 from ...scene.sky import Sky
 from . import multiple_scattering as sky_multiple_scattering
 from . import single_scattering as sky_single_scattering
@@ -24,7 +25,7 @@ class SunDisc:
     angle: float
     """Full angle, radians."""
     bottom: np.ndarray
-    """(3,) float64 radiance in Rec.709 at the lower edge, limb darkening apart; between it is linear in elevation."""
+    """(3,) float64 radiance at the lower edge, limb darkening apart; between it is linear in elevation."""
     top: np.ndarray
     """(3,) float64 at the upper edge."""
     horizon: float
@@ -43,8 +44,8 @@ class SunDisc:
         return np.where(seen[:, None], limb[:, None] * np.maximum(color, 0.0), 0.0).astype(np.float32)
 
     def irradiance(self, rings: int = 32, sectors: int = 128) -> np.ndarray:
-        """(3,) float64 irradiance on a surface that faces the disk, W/m^2 in Rec.709: the strength of a sun light
-        that stands in for it. The midpoint rule over so many rings of equal area and sectors; cosines count as 1."""
+        """(3,) float64 irradiance on a surface that faces the disk, W/m^2: the strength of a sun light that
+        stands in for it. The midpoint rule over so many rings of equal area and sectors; cosines count as 1."""
         radius = 0.5 * self.angle * np.sqrt((np.arange(rings) + 0.5) / rings)
         around = 2.0 * np.pi * (np.arange(sectors) + 0.5) / sectors
         side = np.cross(self.direction, [0.0, 0.0, 1.0])
@@ -57,7 +58,7 @@ class SunDisc:
         return solid_angle * self.radiance(directions.reshape(-1, 3)).astype(np.float64).mean(axis=0)
 
 
-def sun_disc(sky: Sky) -> SunDisc | None:
+def sun_disc(sky: Sky, space: WorkingSpace = REC709) -> SunDisc | None:
     """The disk of a sky whose type has one; None where it is switched off or the Earth hides it."""
     if not sky.scatters or not sky.sun_disc or sky.sun_intensity <= 0.0:
         return None
@@ -78,7 +79,7 @@ def sun_disc(sky: Sky) -> SunDisc | None:
     return SunDisc(
         direction,
         angle,
-        scale * model.sun_irradiance(sky, below),
-        scale * model.sun_irradiance(sky, above),
+        scale * space.from_rec709(model.sun_irradiance(sky, below)),
+        scale * space.from_rec709(model.sun_irradiance(sky, above)),
         float(horizon),
     )

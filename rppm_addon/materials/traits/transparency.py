@@ -31,6 +31,13 @@ def passes_by_ray_length(graph: NodeGraph) -> bool:
     return passes_shadow_rays(graph) and _reads_light_path(graph, "ray_length")
 
 
+def scatters_by_ray_length(graph: NodeGraph) -> bool:
+    """True where what a surface scatters may depend on the length of the ray that comes to it."""
+    kinds = {graph.nodes[index].kind for index in reachable(graph, graph.surface)}
+    scatters = any(kind.startswith("bsdf_") and kind != "bsdf_transparent" for kind in kinds)
+    return scatters and _reads_light_path(graph, "ray_length")
+
+
 def _distinguishes_shadow_rays(graph: NodeGraph) -> bool:
     return _reads_light_path(graph, "is_shadow_ray")
 

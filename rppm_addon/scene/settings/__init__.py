@@ -11,7 +11,8 @@ from .acceleration import (
 )
 from .denoising import DenoisingInputPasses, DenoisingPrefilter, DenoisingQuality
 from .film import PixelFilter
-from .light_paths import MOST_COUNTED_BOUNCES, MOST_SEGMENTS, CausticKind, DirectLight
+from .light_filters import CausticKind
+from .light_paths import MOST_COUNTED_BOUNCES, MOST_SEGMENTS, DirectLight
 from .photons import MOST_PHOTONS
 from .render_settings import RenderSettings
 

@@ -2,7 +2,6 @@
 """Settings of light paths: how long they are, and how light is estimated at their vertices."""
 
 import enum
-import math
 from dataclasses import dataclass
 
 from .group import SettingGroup
@@ -17,13 +16,6 @@ NO_BOUNCE_LIMIT = 0xFFFFFFFF
 _MOST_PASSED = 32
 """Most segments through surfaces that a path does not see, such as objects hidden from the camera; no limit counts
 them."""
-
-
-class CausticKind(enum.IntFlag):
-    """Kinds of caustics, by the lobe that sent the light to a diffuse surface; 0 is none."""
-
-    REFLECTED = 1
-    REFRACTED = 2
 
 
 class DirectLight(enum.Enum):
@@ -92,33 +84,6 @@ class LightPathSettings(SettingGroup):
         soft_maximum=64,
     )
     """The name and the default are those of Cycles."""
-    sample_clamp_direct: float = setting(
-        0.0,
-        "Clamp Direct",
-        "Largest mean of red, green and blue of a sample of direct light, W/(m^2 sr), as in Cycles",
-        minimum=0.0,
-        zero="no limit",
-    )
-    sample_clamp_indirect: float = setting(
-        0.0,
-        "Clamp Indirect",
-        "Largest mean of red, green and blue of a sample of indirect light, W/(m^2 sr), as in Cycles; of photons and "
-        "the final gather it limits what a sample finds",
-        minimum=0.0,
-        zero="no limit",
-    )
-    caustics_reflective: bool = setting(
-        True,
-        "Reflective Caustics",
-        "Caustics by reflection: light that glossy surfaces and mirrors send to diffuse ones. Without, as in Cycles, "
-        "surfaces that diffuse ones see reflect nothing",
-    )
-    caustics_refractive: bool = setting(
-        True,
-        "Refractive Caustics",
-        "Caustics by refraction: light that glass sends to diffuse surfaces. Without, as in Cycles, glass that diffuse "
-        "surfaces see lets nothing through",
-    )
     camera_path_length: int = setting(
         1 + _MOST_BOUNCES,
         "Max Camera Bounces",
@@ -185,23 +150,6 @@ class LightPathSettings(SettingGroup):
     def limits_bounces_by_type(self) -> bool:
         """Whether a limit by type ends paths that the limit of all bounces does not."""
         return any(limit != NO_BOUNCE_LIMIT for limit in self.bounce_limits)
-
-    @property
-    def clamp_direct(self) -> float:
-        """Largest mean of a contribution's channels, W/(m^2 sr), of direct light."""
-        return self.sample_clamp_direct or math.inf
-
-    @property
-    def clamp_indirect(self) -> float:
-        """Largest mean of a contribution's channels, W/(m^2 sr), of indirect light."""
-        return self.sample_clamp_indirect or math.inf
-
-    @property
-    def dropped_caustics(self) -> int:
-        """Kinds of caustics that are left out, as a CausticKind."""
-        return (0 if self.caustics_reflective else CausticKind.REFLECTED) | (
-            0 if self.caustics_refractive else CausticKind.REFRACTED
-        )
 
     @property
     def camera_bounces(self) -> int:

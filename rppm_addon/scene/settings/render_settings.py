@@ -12,6 +12,7 @@ from ..passes import RenderPass, passes_named, with_divisors
 from .acceleration import AccelerationSettings
 from .denoising import DenoisingSettings
 from .film import FilmSettings
+from .light_filters import LightFilterSettings
 from .light_paths import LightPathSettings
 from .photons import PhotonSettings
 from .sampling import SamplingSettings
@@ -19,7 +20,13 @@ from .sampling import SamplingSettings
 
 @dataclass
 class RenderSettings(
-    DenoisingSettings, FilmSettings, AccelerationSettings, LightPathSettings, PhotonSettings, SamplingSettings
+    DenoisingSettings,
+    FilmSettings,
+    AccelerationSettings,
+    LightFilterSettings,
+    LightPathSettings,
+    PhotonSettings,
+    SamplingSettings,
 ):
     """Settings of the photon mapper: one record of all subjects, which begins with the fields of its last base."""
 

@@ -193,7 +193,8 @@ def attributes_of(scene: Scene, prefix: str = "") -> dict[str, str]:
 
     prefix: what comes before the names of passes in the file.
     """
-    return {**scene.stamps, **cryptomatte.metadata(scene, prefix)}
+    space = {"colorInteropID": scene.color_space.interop_id}
+    return {**space, **scene.stamps, **cryptomatte.metadata(scene, prefix)}
 
 
 def placement_of(camera: Camera) -> Placement:

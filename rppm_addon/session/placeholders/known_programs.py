@@ -59,7 +59,10 @@ def programs_of(material: Material) -> tuple[MaterialProgram, ...]:
     """Return the programs that a material is rendered with."""
     try:
         text = compile_graph(
-            material.graph, abbe_number=material.abbe_number, on_round_shapes=material.on_round_shapes
+            material.graph,
+            abbe_number=material.abbe_number,
+            on_round_shapes=material.on_round_shapes,
+            corrects_bump=material.corrects_bump,
         ).text
     except GraphError:
         text = NEUTRAL_TEXT

@@ -51,6 +51,7 @@ class Preparation:
 
     def _prepare(self, scene: Scene) -> Iterator[None]:
         self._library.hurry(False)
+        self._library.graph_defines = scene.color_space.defines
         mapper = ProgressivePhotonMapper(self._context, self._library)
         try:
             yield

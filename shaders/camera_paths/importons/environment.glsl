@@ -34,7 +34,8 @@ vec3 environment_radiance(CameraPath path, vec3 direction) {
     if ((camera_ray_kind(path.flags) & iteration.world_visibility & RAYS_WITH_VISIBILITY) == 0u
         || (gathers && bounces_of(path.depth) > iteration.world_bounces + 1u))
         return vec3(0.0);
-    return world_radiance(direction, (path.flags & PATH_CAMERA_TRANSPARENT) != 0u && !gathers);
+    bool by_camera = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u || iteration.environment_is_fine != 0u;
+    return world_radiance(direction, by_camera && !gathers);
 }
 
 // Radiance and alpha of the environment as a background or a reflection. A transparent film leaves it out where the

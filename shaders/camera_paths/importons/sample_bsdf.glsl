@@ -14,6 +14,11 @@ struct BsdfSample {
     vec3 gather_throughput;  // of the ray of a final gather: the BSDF of a diffuse lobe over that of a Lambertian one
 };
 
+#ifdef FILTERS_GLOSSY
+// The pdf by which a rough lobe scatters the path, 1/sr.
+float filtered_pdf = NO_PDF;
+#endif
+
 // u: selects reflection or transmission, below the selection weight of both.
 BsdfSample sample_diffuse(SurfaceVertex vertex, LobeSelection lobes, float u, vec2 disk) {
     CameraPath path = vertex.path;
@@ -62,6 +67,10 @@ BsdfSample sample_selected_lobe(SurfaceVertex vertex, LobeSelection lobes, vec4 
     bsdf.pdf = 0.0;
     if (iteration.next_event != 0u && lobe.kind != LOBE_NONE && lobe.alpha > MIN_MIS_ALPHA)
         bsdf.pdf = selection_probability(bsdf.probability, lobes) * lobe_pdf(lobe, bsdf.normal, wo, sampled.direction);
+#ifdef FILTERS_GLOSSY
+    if (lobe.kind != LOBE_NONE && lobe.alpha > MIN_MIS_ALPHA)
+        filtered_pdf = bsdf.probability / lobes.total * lobe_pdf(lobe, bsdf.normal, wo, sampled.direction);
+#endif
     bsdf.direction = sampled.direction;
     bsdf.weight = sampled.weight * lobe_shadowing(lobe, closure.shading_normal, sampled.direction);
     if (lobe_is_hair(lobe.kind))

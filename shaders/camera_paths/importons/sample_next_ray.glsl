@@ -17,6 +17,9 @@ void extend_path(inout SurfaceVertex vertex, BsdfSample bsdf) {
     if (is_scattered) path.bounce_counts = counted(path.bounce_counts, counted_scatter(bsdf.scatter, bsdf.transmitted));
 #endif
     path.straight_length = is_scattered ? 0.0 : path.straight_length + closure.distance;
+#ifdef FILTERS_GLOSSY
+    path.least_pdf = min(path.least_pdf, filtered_pdf);
+#endif
     path.scatter_pdf = bsdf.pdf;
     if (is_scattered && bsdf.pdf > 0.0) {
         path.lit_normal = closure.shading_normal;

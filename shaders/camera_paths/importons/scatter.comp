@@ -8,6 +8,7 @@
 // lint: PORTALS=1
 // lint: TRANSPARENT_GLASS=1
 // lint: COUNTS_BOUNCES=1 CLAMPS_LIGHT=1
+// lint: COUNTS_BOUNCES=1 CLAMPS_LIGHT=1 FILTERS_GLOSSY=1
 // TraceImportons: at the end of the ray of a camera path, add the emission along the ray, leave an importon for the
 // lobes that store photons, and sample the next ray. The verbs are those of pbrt-v4's wavefront integrator.
 

@@ -20,6 +20,4 @@ void node_hue_saturation(float hue, float saturation, float value, float factor,
     result = max(mix(color, hsv_to_rgb(hsv), factor), 0.0);
 }
 
-void node_rgb_to_bw(vec3 color, out float luminance) {
-    luminance = dot(color, vec3(0.2126391, 0.7151691, 0.0721928));  // Rec. 709, with Cycles' rounding
-}
+void node_rgb_to_bw(vec3 color, out float value) { value = luminance(color); }

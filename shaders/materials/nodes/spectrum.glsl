@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colors of glowing bodies and of single wavelengths, linear Rec. 709 without negative parts.
+// Colors of glowing bodies and of single wavelengths, in the working space without negative parts.
+
+#include "materials/working_space.glsl"
 
 // Planck's spectrum seen by the CIE 1931 observer, of luminance 1: quotients of polynomials in 1000 K / T,
 // fitted to 4.4e-4 over 800 K to 12000 K. Colder and hotter bodies look like those at the ends, as in Cycles.
@@ -16,7 +18,7 @@ void node_blackbody(float temperature, out vec3 color) {
                                                  * (vec3(-0.99096182, 29.124568, -17.445843)
                                                     + u * vec3(1.1167863, -2.6370172, 4.0517044)))));
     vec3 under = 1.0 + u * (vec3(2.9819554, 14.070799, 2.9943172) + u * vec3(-2.0254439, 33.591686, 15.679012));
-    color = max(over / under, 0.0);
+    color = max(from_rec709(over / under), 0.0);
 }
 
 // A bell whose sides fall off differently: of this height at `center`, `low` and `high` are 1 / standard deviation.
@@ -46,7 +48,5 @@ void node_wavelength(float wavelength, out vec3 color) {
     if (wavelength <= 375.0 || wavelength >= 780.0) return;
     float knot = 380.0 + 5.0 * trunc((wavelength - 380.0) / 5.0);
     vec3 xyz = mix(observer(knot), observer(knot + 5.0), (wavelength - knot) / 5.0);
-    const mat3 to_rgb =
-        mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252);
-    color = max(to_rgb * xyz, 0.0) / 2.52;
+    color = max(from_xyz(xyz), 0.0) / 2.52;
 }

@@ -118,6 +118,19 @@ float wavelength_choice(uint index, uint flags) {
 }
 #endif
 
+// As in Cycles, blurred bounces blur the reflections and refractions that they see. Photons do not know where they will
+// be gathered: as the final gather they take the mean of a diffuse bounce. Other rays know the pdfs of their path, but
+// do not make lobes gather photons where no photons are stored.
+float least_alpha(uint index, uint flags) {
+    if (parameters.filter_pdf_scale <= 0.0) return 0.0;
+    if (parameters.path_kind == PATH_OF_PHOTON) return parameters.gathered_alpha;
+    if (parameters.path_kind != PATH_OF_CAMERA) return 0.0;
+    if ((flags & PATH_FINAL_GATHER) != 0u) return parameters.gathered_alpha;
+    float pdf = uintBitsToFloat(path_words[parameters.camera_stride * index + parameters.camera_least_pdf]);
+    float alpha = 0.5 * sqrt(max(1.0 - parameters.filter_pdf_scale * pdf, 0.0));
+    return min(alpha, max(parameters.gathered_alpha, parameters.specular_alpha));
+}
+
 ClosureBuilder builder_at(Surface surface, float u_choice) {
     ClosureBuilder builder =
         closure_builder(surface.viewer, surface.geometric, surface.normal, surface.backfacing, u_choice);
@@ -265,6 +278,7 @@ void main() {
         random_sequence(parameters.seed, parameters.iteration, STAGE_RESOLVE, parameters.segment + variant, index);
     ClosureBuilder builder = builder_at(surface, next_random(random));
     builder.seen_by_camera = (surface.ray & RAY_CAMERA) != 0u;
+    builder.least_alpha = least_alpha(index, flags);
     uint material = attributes[hit.triangle].material;
     ShadingInstance instance = shading_instances[surface.instance];
 #ifdef DISPERSES
@@ -297,6 +311,9 @@ void main() {
     builder.closure.distance = hit.distance;
     builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
     builder.closure.shading_normal = pack_unit_vector(builder.shading);
+#ifdef UNCORRECTED_BUMP
+    builder.closure.shading_normal = builder.closure.diffuse_normal;  // so that its slopes shadow nothing
+#endif
     builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
     make_usable(builder.closure);
     store(index, builder.closure);

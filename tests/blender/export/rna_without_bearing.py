@@ -44,7 +44,7 @@ debug_use_cpu_sse42 debug_bvh_layout debug_use_cuda_adaptive_compile debug_use_o
 debug_use_hip_adaptive_compile debug_use_metal_adaptive_compile
 """
 _CYCLES_TRADES_TRUTH_FOR_NOISE = """
-caustics_reflective caustics_refractive blur_glossy sample_clamp_direct sample_clamp_indirect use_fast_gi
+caustics_reflective caustics_refractive  sample_clamp_direct sample_clamp_indirect use_fast_gi
 fast_gi_method ao_bounces ao_bounces_render diffuse_bounces glossy_bounces transmission_bounces
 """
 _OF_WHAT_IS_NAMED = """
@@ -87,7 +87,7 @@ WITHOUT_BEARING = {
     + " custom_filepath custom_shader custom_mode custom_bytecode custom_bytecode_hash cycles_custom",
     "CameraDOFSettings": "",
     "ViewLayer": """
-        pass_alpha_threshold eevee active_aov active_aov_index active_lightgroup active_lightgroup_index
+        eevee active_aov active_aov_index active_lightgroup active_lightgroup_index
         use_pass_cryptomatte_accurate use_ao use_strand use_volumes use_grease_pencil
         active_layer_collection has_export_collections use_freestyle freestyle_settings
     """,
@@ -114,7 +114,7 @@ WITHOUT_BEARING = {
     """,
     "world.cycles_visibility": "",
     "material.cycles": """
-        emission_sampling use_bump_map_correction volume_sampling volume_interpolation volume_step_rate
+        emission_sampling volume_sampling volume_interpolation volume_step_rate
     """,
     "scene.cycles": f"{_SAMPLING_OF_CYCLES} {_CYCLES_TRADES_TRUTH_FOR_NOISE} {_OF_WHAT_IS_NAMED}",
     "scene.cycles_curves": "subdivisions",

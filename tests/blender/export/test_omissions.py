@@ -52,9 +52,14 @@ def see_through(scene):
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
 
 
+def catch_shadows(scene):
+    the(scene, "MESH").is_shadow_catcher = True
+
+
 USES = {
     "Adaptive Subdivision": subdivide,
     "Rolling Shutter": roll,
+    "Shadow Catcher": catch_shadows,
     "Transparent Glass": see_through,
 }
 ALL = (*omissions.OF_OBJECTS, *omissions.OF_SCENES)

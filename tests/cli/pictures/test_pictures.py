@@ -8,6 +8,7 @@ import pytest
 
 from rppm_addon.commands.picture_files import write_png
 from rppm_addon.pictures import PictureError, Placement, read_exr, standard_view, write_exr
+from rppm_addon.scene.common.working_space import ACESCG
 
 
 @pytest.fixture
@@ -86,6 +87,11 @@ def test_png_reads_back_the_right_way_up(tmp_path):
         write_png(tmp_path / "picture.png", pixels)
         with PIL.Image.open(tmp_path / "picture.png") as image:
             np.testing.assert_array_equal(np.asarray(image), pixels[::-1])
+
+
+def test_standard_view_shows_working_spaces_as_rec709():
+    white_and_red = np.array([[[0.5, 0.5, 0.5], ACESCG.from_rec709(np.array([0.2158605, 0.0, 0.0]))]])
+    assert standard_view(white_and_red, ACESCG).tolist() == [[[188, 188, 188], [128, 0, 0]]]
 
 
 def test_standard_view_is_the_srgb_curve_on_straight_color():

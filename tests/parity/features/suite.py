@@ -14,6 +14,7 @@ from .surfaces import ray_nodes, shaders  # noqa: F401
 from .lighting import shadow_terminator  # noqa: F401
 from .shapes import simplify  # noqa: F401
 from .values import nodes, zones_and_closures  # noqa: F401
+from .values import working_spaces  # noqa: F401
 
 # isort: on
 from .rows import ROWS

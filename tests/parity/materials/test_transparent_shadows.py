@@ -47,6 +47,16 @@ def a_panel_that_shines_through_a_pane() -> None:
 
 def card_for_cameras_alone() -> None:
     """Diffuse, but where a shadow ray asks."""
+    hidden_card()
+    light("SUN", 3.0, place(turn=(10.0, 0.0, 0.0)), angle=0.02)
+
+
+def card_for_cameras_alone_below_a_lamp() -> None:
+    hidden_card()
+    light("POINT", 300.0, place(at=(0.0, 0.5, 3.0)), shadow_soft_size=0.2)
+
+
+def hidden_card() -> None:
     floor(0.0, 0.5)
     made = material(DIFFUSE, Color=0.8)
     net = Net(made.node_tree)
@@ -56,7 +66,6 @@ def card_for_cameras_alone() -> None:
         net.set(end, source)
     net.set(net.find("OUTPUT_MATERIAL").inputs["Surface"], mix.outputs[0])
     plane(1.2, made, place(at=(0.0, 0.5, 0.9)))
-    light("SUN", 3.0, place(turn=(10.0, 0.0, 0.0)), angle=0.02)
 
 
 @pytest.mark.parametrize(
@@ -67,6 +76,7 @@ def card_for_cameras_alone() -> None:
         diffuse_below_a_card_in_the_sun,
         a_panel_that_shines_through_a_pane,
         card_for_cameras_alone,
+        card_for_cameras_alone_below_a_lamp,
     ],
 )
 def test_light_through_transparent_surfaces(renderer, build):

@@ -8,6 +8,7 @@ import pytest
 from rppm_addon.scene.passes import AMBIENT_OCCLUSION, CAUSTICS, FILM_PASSES, ROUGHNESS, SCATTERED_LIGHT, VOLUME_LIGHT
 
 from ..engines import PIXEL_CENTERS, cycles_channels, cycles_pass, exported_scene, render_frame, stacked, unfilter
+from ..net import material as net_material
 from ..scenes import DIFFUSE, EMISSION, GLOSSY, ball, camera, light, material, new_scene, place, plane
 
 OF_LIGHT = {CAUSTICS.name, AMBIENT_OCCLUSION.name, ROUGHNESS.name, *(entry.name for entry in VOLUME_LIGHT)}.union(
@@ -96,6 +97,25 @@ def test_aovs_are_those_of_cycles(renderer, surfaces):
         same = np.isclose(np.atleast_3d(frame.passes[name]), theirs, rtol=2e-3, atol=2e-3).all(axis=-1)
         assert same.mean() > 0.98, f"{name}: more than edges differ"
         assert theirs.std() > 0.0
+
+
+@pytest.mark.parametrize("threshold", [0.0, 0.2, 0.4])
+def test_passes_show_what_is_less_transparent_than_the_threshold(renderer, threshold):
+    """A card of an alpha of 0.3 stands before a wall."""
+    new_scene(resolution=16)
+    card, net = net_material("Card")
+    net.output(net.out("MixShader", 0, {0: 0.3, 1: net.out("BsdfTransparent"), 2: net.emission((0.5, 0.4, 0.3))}))
+    for number, (surface, away) in enumerate(((card, -1.0), (material(DIFFUSE), 1.0))):
+        plane(3.0, surface, place(at=(0.0, away, 0.0), turn=(90.0, 0.0, 0.0))).pass_index = 3 + number
+    camera((0.0, -5.0, 0.0), (0.0, 0.0, 0.0))
+    layer = bpy.context.view_layer
+    layer.pass_alpha_threshold, layer.use_pass_z, layer.use_pass_object_index = threshold, True, True
+    layer.use_pass_vector = True
+    unfilter()
+    channels = cycles_channels()
+    passes = render_frame(renderer, **PIXEL_CENTERS).passes
+    np.testing.assert_allclose(passes["Depth"], channels["Depth.V" if "Depth.V" in channels else "Depth.Z"], rtol=1e-4)
+    assert (passes["Object Index"] == (3.0 if threshold < 0.3 else 4.0)).all()
 
 
 def test_shadows_on_catchers_are_those_of_cycles(renderer):

@@ -7,8 +7,16 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ....scene.common.working_space import REC709, WORKING_SPACES, WorkingSpace
+
 WHITE_IN_CYCLES = {"Rec.2100-HLG": 2.03, "Rec.2100-PQ": 2.03}
 """By space, how much brighter Cycles takes images than Blender itself: 100 nits are 1, not 203."""
+
+
+def working_space() -> WorkingSpace:
+    """The file's working space; Rec.709 in a Blender that has no other (before 5.0)."""
+    management = getattr(bpy.data, "colorspace", None)
+    return WORKING_SPACES.get(getattr(management, "working_space", ""), REC709)
 
 
 def scene_linear(colors: np.ndarray, space: str) -> np.ndarray:

@@ -10,9 +10,10 @@ import bpy
 import numpy as np
 
 from ....scene.common.whole_files import is_no_file
+from ....scene.common.working_space import REC709
 from ....scene.images import Image, encode_srgb
 from ..common.slices import Slices
-from .color_spaces import WHITE_IN_CYCLES, scene_linear
+from .color_spaces import WHITE_IN_CYCLES, scene_linear, working_space
 from .kept_images import keep, kept
 from .multilayer import PassSelection, file_of, read_pass
 from .texture_limit import limited
@@ -25,7 +26,8 @@ _PART = 1 << 16
 _LARGE = 1 << 20
 """Pixels from which on an image is read in steps."""
 _FIRST_PASS = PassSelection()
-_LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "Raw", "scene_linear"}
+_DATA = {"Non-Color", "Raw", "scene_linear"}
+_LINEAR_SPACES = {"Linear Rec.709", "Linear", *_DATA}
 
 
 class ImageTable:
@@ -280,9 +282,19 @@ class _Look:
         return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file)
 
     @property
+    def times_alpha(self) -> int:
+        """How often the colors of its bytes are multiplied by alpha: Cycles takes those in files for straight, whatever
+        the user says."""
+        if not self.is_associated:
+            return 0
+        return 2 if self.alpha_mode == "PREMUL" and self.is_in_file else 1
+
+    @property
     def needs_blender(self) -> bool:
         """Whether Blender is asked to convert its colors."""
-        return not self.is_float and self.space != "sRGB" and self.space not in _LINEAR_SPACES
+        if self.is_float or self.space in _DATA or self.space == working_space().name:
+            return False
+        return working_space() is not REC709 or (self.space != "sRGB" and self.space not in _LINEAR_SPACES)
 
 
 def _encoded(look: _Look, pixels: np.ndarray) -> Image:
@@ -293,22 +305,28 @@ def _encoded(look: _Look, pixels: np.ndarray) -> Image:
     if look.is_float:
         # Blender has made them linear.
         pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
-        if space == "sRGB":
+        is_encoded = space == "sRGB" and working_space() is REC709
+        if is_encoded:
             pixels[..., :3] = encode_srgb(pixels[..., :3])
-        return Image(look.name, pixels, "SRGB" if space == "sRGB" else "LINEAR")
+        return Image(look.name, pixels, "SRGB" if is_encoded else "LINEAR")
     if look.needs_blender:
-        linear = scene_linear(pixels[..., :3], space) * WHITE_IN_CYCLES.get(space, 1.0)
-        pixels[..., :3] = linear * pixels[..., 3:] if look.is_associated else linear
+        encoded = pixels[..., :3]
+        if look.times_alpha == 2:
+            encoded = _times_alpha(_bytes(pixels)) / np.float32(255.0)
+        linear = scene_linear(encoded, space) * WHITE_IN_CYCLES.get(space, 1.0)
+        pixels[..., :3] = linear * pixels[..., 3:] if look.times_alpha else linear
         return Image(look.name, pixels, "LINEAR")
-    encoding = "LINEAR" if space in _LINEAR_SPACES else "SRGB"
+    encoding = "SRGB" if space == "sRGB" else "LINEAR"
     pixels = _bytes(pixels)
     if look.is_associated and pixels[..., 3].min() < 255:
-        # Cycles takes colors in files of bytes for straight, whatever the user says.
-        products = pixels[..., :3].astype(np.uint16) * pixels[..., 3:]
-        if look.alpha_mode == "PREMUL" and look.is_in_file:
-            products = (products + 127) // 255 * pixels[..., 3:]
-        pixels[..., :3] = products // 255
+        colors = _times_alpha(pixels) if look.times_alpha == 2 else pixels[..., :3].astype(np.uint16)
+        pixels[..., :3] = colors * pixels[..., 3:] // 255
     return Image(look.name, pixels, encoding)
+
+
+def _times_alpha(pixels: np.ndarray) -> np.ndarray:
+    """(height, width, 3) uint16 colors of bytes, multiplied by their alpha and rounded."""
+    return (pixels[..., :3].astype(np.uint16) * pixels[..., 3:] + 127) // 255
 
 
 def _bytes(pixels: np.ndarray) -> np.ndarray:
@@ -323,11 +341,10 @@ def _bytes(pixels: np.ndarray) -> np.ndarray:
 def is_associated(image: bpy.types.Image | None) -> bool:
     """Whether an image's colors come multiplied by its alpha, and are divided by it where alpha is used as well."""
     return (
-        image is not None and image.alpha_mode in {"STRAIGHT", "PREMUL"} and image.colorspace_settings.name not in _DATA
+        image is not None
+        and image.alpha_mode in {"STRAIGHT", "PREMUL"}
+        and image.colorspace_settings.name not in {"Non-Color", "Raw"}
     )
-
-
-_DATA = {"Non-Color", "Raw"}
 
 
 def _reason(image: bpy.types.Image) -> str:

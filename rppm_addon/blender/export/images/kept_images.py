@@ -9,6 +9,7 @@ from bpy.app.handlers import persistent
 
 from ....scene import Image
 from ...app_handlers import add_handlers, remove_handlers
+from .color_spaces import working_space
 from .multilayer import PassSelection
 
 MOST_BYTES = 1 << 30
@@ -54,7 +55,7 @@ def _key(image: bpy.types.Image) -> tuple | None:
         except (OSError, ValueError):
             return None
         place = status.st_mtime_ns, status.st_size
-    space = image.colorspace_settings.name
+    space = image.colorspace_settings.name, working_space().name
     return image.name, image.filepath, place, tuple(image.size), space, image.alpha_mode, image.is_float
 
 

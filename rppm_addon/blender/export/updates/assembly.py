@@ -5,6 +5,7 @@ import bpy
 
 from ....scene import Light, Scene
 from ..context import ExportContext
+from ..images.color_spaces import working_space
 from ..instances.objects import ObjectExporter
 from ..instances.placements import Placed
 from ..view_layer.assets import export_asset_names
@@ -28,6 +29,8 @@ def fill_scene(
     scene.lights = [*placed.lights, *suns]
     scene.images = list(context.images.images)
     scene.exposure = export_exposure(source)
+    scene.pass_alpha_threshold = depsgraph.view_layer_eval.pass_alpha_threshold
+    scene.working_space = working_space().name
     scene.dicing_rate = export_dicing_rate(source, context.viewport)
     scene.cubemap_center = export_cubemap_center(depsgraph)
     scene.asset_names = export_asset_names(depsgraph, scene.settings)

@@ -14,6 +14,7 @@ from ..common.report import Report
 from ..common.slices import ExportProgress, Unfinished
 from ..context import ExportContext
 from ..geometry.strands.curve_settings import curve_settings
+from ..images.color_spaces import working_space
 from ..images.texture_limit import texture_limit
 from ..view_layer.layers import overrides_of
 from ..view_layer.light_linking import LightLinks
@@ -106,7 +107,7 @@ class SceneSync:
         """Begin anew where the view layer changes the scene in another way, or too many images are not used."""
         before = self._overrides
         limit = texture_limit(depsgraph.scene_eval, self._viewport)
-        self._overrides = (*overrides_of(depsgraph), limit, curve_settings(depsgraph))
+        self._overrides = (*overrides_of(depsgraph), limit, curve_settings(depsgraph), working_space().name)
         if self._overrides != before or 0 < self._most_images < len(self._context.images.images):
             self._begin()
 

@@ -30,6 +30,7 @@ SHARED = {
             "caustics_refractive",
             "film_transparent_glass",
             "film_transparent_roughness",
+            "blur_glossy",
         )
     },
     **{

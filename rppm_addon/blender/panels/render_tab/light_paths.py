@@ -61,6 +61,7 @@ class RPPM_PT_light_paths_caustics(_LightPathsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         settings = context.scene.rppm
+        self.column().prop(settings, "blur_glossy")
         column = self.column().column(heading="Caustics", align=True)
         column.prop(settings, "caustics_reflective", text="Reflective")
         column.prop(settings, "caustics_refractive", text="Refractive")

@@ -77,6 +77,7 @@ CAMERA_PATH = Record(
     photon_radius="float",
     arrived_counts="uint",
     bounce_counts="uint",
+    least_pdf="float",
 )
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
 the clip start, ``straight_length`` of those that led straight through surfaces since the last event of another kind,
@@ -87,7 +88,8 @@ that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`
 ``photon_radius`` is the radius of the disk, meters, in which photons count at the vertex where the last ray of the
 path's final gather left: photons bring some of the light there that this ray brings, too. ``arrived_counts`` are the
 bounces by type (shaders/common/bounce_counts.glsl) of the path as it came to its vertex, and ``bounce_counts`` those of
-the path as it goes on from there; both are 0 where nobody asks."""
+the path as it goes on from there; both are 0 where nobody asks. ``least_pdf`` is the least of the pdfs by which lobes
+have scattered the path, 1/sr, where Filter Glossy asks."""
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Radiance of the pixels of a band, W/(m^2 sr), and alpha."""

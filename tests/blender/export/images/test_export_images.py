@@ -14,6 +14,7 @@ from rppm_addon.blender.export.images import kept_images
 from rppm_addon.blender.export.images.color_spaces import scene_linear
 from rppm_addon.blender.export.images.images import MISSING
 from rppm_addon.blender.export.images.multilayer import PassSelection
+from rppm_addon.scene.common.working_space import WORKING_SPACES
 from rppm_addon.scene.images import encode_srgb
 
 
@@ -48,6 +49,17 @@ def test_float_images_are_linear(scene):
     assert image.encoding == "LINEAR" and image.pixels.dtype == np.float32
     np.testing.assert_allclose(image.pixels, PIXELS * 7.0, atol=1e-5)
     assert warnings == []
+
+
+@pytest.mark.skipif(not hasattr(bpy.data, "colorspace"), reason="before Blender 5.0 all files have one working space")
+@pytest.mark.parametrize("name", ["ACEScg", "Linear Rec.2020"])
+def test_images_are_of_the_working_space(scene, name):
+    assert export(scene).working_space == "Linear Rec.709"
+    bpy.ops.wm.set_working_color_space(working_space=name)
+    red = np.zeros((2, 2, 4)) + (1.0, 0.0, 0.0, 1.0)
+    image, _, _ = exported_image(scene, textured(new_image("Red", red)))
+    assert image.encoding == "LINEAR" and export(scene).working_space == name
+    np.testing.assert_allclose(image.pixels[0, 0, :3], WORKING_SPACES[name].from_rec709(red[0, 0, :3]), atol=2e-3)
 
 
 def test_data_images_are_not_decoded(scene):

@@ -54,6 +54,15 @@ for _kinds in (("reflective",), ("refractive",), ("reflective", "refractive")):
     paths(CAUSTICS, f"{' and '.join(_kinds)} off", {f"caustics_{kind}": False for kind in _kinds})
 
 
+paths("Filter Glossy", "1", {"blur_glossy": 1.0})
+_MEAN_BLUR = {
+    "reason": "photons and the final gather take the mean blur of one diffuse bounce",
+    "mean": 0.03,
+    "block": 0.1,
+}
+paths("Filter Glossy", "0.2", {"blur_glossy": 0.2}, **_MEAN_BLUR)
+
+
 def _clamped(values: dict[str, object], glows: bool) -> Callable[[], None]:
     """A ball and the ground, seen straight and in a mirror: both below a lamp of no size, or a ball that glows on black
     ground. Each path has one light to choose, so that no chance changes what it brings."""

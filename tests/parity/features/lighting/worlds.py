@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Worlds: colors, environment pictures, skies, and nodes by direction and ray."""
 
+from collections.abc import Callable
+
 import bpy
+import numpy as np
 
 from ...net import Net, material, socket
-from ...scenes import background
+from ...scenes import GLOSSY, background, camera, place, plane
+from ...scenes import material as scenes_material
 from .. import stage
 from ..rows import Kind, Row, add
 from ..values.image_textures import picture
@@ -74,6 +78,37 @@ for _interpolation in ("Closest", "Cubic"):
     world(GROUP, f"mirrored, {_interpolation}", _given, _shiny, **MIRRORED, **MAPPED)
 world(GROUP, "mirror ball, mirrored", _environment(projection="MIRROR_BALL"), _shiny, **MIRRORED, **MAPPED)
 world(GROUP, "a bright spot", feed(_spotted))
+
+
+def _far_away(in_mirror: bool) -> Callable[[], None]:
+    """Some pixels of an image 8192 pixels wide, each another gray, fill the picture, straight or in a mirror."""
+
+    def build() -> None:
+        stage.empty()
+        pixels = np.ones((16, 8192, 4), np.float32)
+        pixels[..., :3] = np.random.default_rng(5).random((16, 8192, 1))
+        image = bpy.data.images.new("Wide", 8192, 16, float_buffer=True)
+        image.pixels.foreach_set(pixels.ravel())
+        image.pack()
+        net = Net(bpy.context.scene.world.node_tree)
+        net.set(background().inputs["Color"], net.out("TexEnvironment", 0, image=image))
+        background().inputs["Strength"].default_value = 1.0
+        if in_mirror:
+            plane(
+                1.0,
+                scenes_material(GLOSSY, Color=(0.9, 0.9, 0.9), Roughness=0.0),
+                place((2.0, 0.0, 0.0), (0.0, 90.0, 20.0)),
+            )
+        camera((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), 0.7)
+
+    return build
+
+
+add(Row(GROUP, "8192 pixels wide", _far_away(False), Kind.VALUES))
+_TURNS = {"reason": "a mirror's normal has 16 bits, which turn what is seen by a twentieth of a pixel", "mean": 0.03}
+add(
+    Row(GROUP, "8192 pixels wide, mirrored", _far_away(True), Kind.VALUES, settings={"camera_path_length": 4}, **_TURNS)
+)
 
 
 def _shades(output):

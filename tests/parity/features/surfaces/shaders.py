@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shader nodes under light: each with its options, Principled socket by socket, mixes, and values that drive them."""
 
+import bpy
+
 from ...net import material, socket
 from ...scenes import place, plane
 from ..rows import lit, value
@@ -152,6 +154,21 @@ driven("Coat Normal by a bump", Coat_Weight=1.0, Coat_Normal=_bump)
 driven("Tangent by a UV map", Metallic=1.0, Roughness=0.4, Anisotropic=0.8, Tangent=_along_u)
 
 
+_STEEP = socket("Bump", 0, {"Height": FACTOR, "Distance": 0.3})
+
+
+def uncorrected(name, shown, **members):
+    def prepare() -> None:
+        bpy.data.materials["Feature"].cycles.use_bump_map_correction = False
+
+    lit("Bump Map Correction", f"off, {name}", shown, prepare, **members)
+
+
+_LIT_BELOW = {"reason": "light from below the smooth surface counts where a bump turns to it", "block": 0.06}
+uncorrected("diffuse", shader("BsdfDiffuse", {"Normal": _STEEP}), **_LIT_BELOW)
+uncorrected("glossy", shader("BsdfAnisotropic", {"Roughness": 0.5, "Normal": _STEEP}), effort=3)
+
+
 def mixed(first, second, factor=0.4):
     return shader("MixShader", {0: factor, 1: first, 2: second})
 
@@ -199,6 +216,17 @@ for _output in LIGHT_PATH:
         f"{_output}, mixing a color",
         shader("BsdfDiffuse", {"Color": socket("Mix", 2, _colors, data_type="RGBA")}),
     )
+
+
+_near = socket("Math", 0, {0: socket("LightPath", "Ray Length"), 1: 0.2}, operation="MULTIPLY", use_clamp=True)
+_colors = {"Factor_Float": _near, "A_Color": (0.2, 0.3, 0.8), "B_Color": (0.8, 0.3, 0.1)}
+lit(
+    GROUP,
+    "Ray Length, mixing a color",
+    shader("BsdfDiffuse", {"Color": socket("Mix", 2, _colors, data_type="RGBA")}),
+    reason="photons measure it from where they come from",
+    warns=True,
+)
 
 
 def _panes() -> None:

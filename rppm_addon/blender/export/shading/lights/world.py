@@ -12,6 +12,7 @@ from .....materials.sky.sun import sun_disc
 from .....scene import Light, LightKind, Link, Mist, NodeGraph, RayVisibility, ShaderNode, World
 from .....scene.sky import Sky
 from ...context import ExportContext
+from ...images.color_spaces import working_space
 from ...view_layer.layers import light_group_of
 from ..nodes.graphs import GraphExporter
 from ..nodes.inlining import readable_tree
@@ -72,7 +73,7 @@ def _environment(world: bpy.types.World, context: ExportContext) -> tuple[World,
 
 def _sun(graph: NodeGraph, index: int, sky: Sky, owner: str) -> Light | None:
     """The sun of a sky texture: what the world makes of its irradiance, apart from what does not depend on it."""
-    disk = sun_disc(sky)
+    disk = sun_disc(sky, working_space())
     if disk is None:
         return None
     nodes = copy.deepcopy(graph.nodes)

@@ -3,7 +3,11 @@
 
 import bpy
 
-from .....materials.traits.transparency import passes_by_ray_length, stops_shadow_rays_as_glass
+from .....materials.traits.transparency import (
+    passes_by_ray_length,
+    scatters_by_ray_length,
+    stops_shadow_rays_as_glass,
+)
 from .....scene import Material, NodeGraph
 from ...context import ExportContext
 from . import surface_nodes, value_nodes, volume_nodes  # noqa: F401  register their handlers
@@ -38,6 +42,7 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
     _warn_of_light_paths(owner, graph, context)
     shadow = getattr(material, "use_transparent_shadow", True)
     exported = Material(material.name, graph, transparent_shadow=shadow, pass_index=material.pass_index)
+    exported.corrects_bump = getattr(getattr(material, "cycles", None), "use_bump_map_correction", True)
     if hasattr(material, "rppm") and material.rppm.use_dispersion:
         exported.abbe_number = material.rppm.abbe_number
     if exporter.is_linked(output.inputs["Volume"], ()):
@@ -57,4 +62,9 @@ def _warn_of_light_paths(owner: str, graph: NodeGraph, context: ExportContext) -
         context.report.warn(
             f"{owner}: it lets light pass by Ray Length, which photons measure from where they come from; light behind "
             "it may differ"
+        )
+    elif scatters_by_ray_length(graph):
+        context.report.warn(
+            f"{owner}: it scatters light by Ray Length, which photons measure from where they come from; the light "
+            "that it sends to other surfaces may differ"
         )

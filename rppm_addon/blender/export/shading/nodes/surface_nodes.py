@@ -13,6 +13,7 @@ from .....materials.nodes.geometry import CAST_ATTRIBUTE
 from .....materials.sky.picture import sky_picture
 from .....scene import Image, Link
 from .....scene.common.whole_files import is_no_file
+from .....scene.common.working_space import WorkingSpace
 from .....scene.sky import Sky
 from ...geometry.meshes.attributes import (
     ACTIVE_COLOR,
@@ -34,6 +35,7 @@ from ...geometry.strands.attributes import (
     POINT_RANDOM,
     THICKNESS,
 )
+from ...images.color_spaces import working_space
 from ...images.images import is_associated
 from .graphs import GraphExporter, handles, snake_case
 from .links import Path
@@ -303,7 +305,8 @@ def _other_geometry(exporter: GraphExporter, node: bpy.types.Node, output: bpy.t
 def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> Link:
     sky = sky_of(node)
     name = exporter.name_of(node)
-    image = exporter.images.computed((name, sky), lambda: _sky_image(name, sky))
+    space = working_space()
+    image = exporter.images.computed((name, sky), lambda: _sky_image(name, sky, space))
     vector = exporter.coordinates_of(node, path)
     is_direction = exporter.is_world and exporter.given_coordinates(node, path) is None
     options = {} if is_direction else {"projection": "SKY"}
@@ -313,9 +316,9 @@ def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.type
 
 
 @functools.lru_cache(maxsize=8)
-def _sky_image(name: str, sky: Sky) -> Image:
+def _sky_image(name: str, sky: Sky, space: WorkingSpace) -> Image:
     """Simulating an atmosphere takes up to a second: frames whose sky stays the same share its picture."""
-    return Image(name, sky_picture(sky))
+    return Image(name, sky_picture(sky, space=space))
 
 
 def sky_of(node: bpy.types.Node) -> Sky:
