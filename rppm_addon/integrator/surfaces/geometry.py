@@ -18,7 +18,9 @@ from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
+from ..common.require import require
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
+from .volume_insets import bounds_volumes_alone, inset_matrix
 
 log = logging.getLogger(__name__)
 
@@ -186,6 +188,10 @@ class Geometry(BufferSet):
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
         self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
+        for number, instance in enumerate(instances):
+            if bounds_volumes_alone(instance, scene.materials):
+                box = np.array(require(bounds[which[number]]))
+                self.matrices[number] = inset_matrix(self.matrices[number], box, number)
         entries = INSTANCE_ENTRY.zeros(len(instances))
         entries["first_triangle"] = ends - lengths
         slot_materials: list[int] = []
