@@ -15,6 +15,7 @@ Record(
     least_free_path="float",
     beam_probability="float",
     longest_beam="float",
+    has_falloff="uint",
 )
 
 
@@ -47,5 +48,6 @@ class MediumScattering(Stage):
                     "least_free_path": beams.least_free_path,
                     "beam_probability": beams.probability(photons.photon_count),
                     "longest_beam": 4.0 * context.geometry.radius,
+                    "has_falloff": context.lights.has_falloff,
                 },
             )
