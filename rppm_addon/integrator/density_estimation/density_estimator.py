@@ -76,8 +76,8 @@ class DensityEstimator(Stage):
     def begin(
         self, settings: RenderSettings, photons: StoredPhotons, iteration: Iteration, medium_radius: float = 0.0
     ) -> None:
-        """Take an iteration's photons. medium_radius: within which the sums take photons in media, meters; the quanta of
-        small surfaces would be too coarse for what lies around them."""
+        """Take an iteration's photons. medium_radius: within which the sums take photons in media, meters. The quanta
+        of small surfaces would be too coarse for these."""
         self._wanted, self._photons, self._prepared = settings.density_estimation, photons, None
         self.sums.count_in(
             radiance_quantum(photons.photon_flux, max(photons.radii.caustic, photons.radii.wide, medium_radius)),

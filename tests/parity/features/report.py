@@ -56,6 +56,7 @@ with the objects that use it. Nodes are named likewise; the remarks further down
 """
 VOLUMES = (
     ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it"),
+    ("Motion Blur of the gas of fluid domains", "gas is sharp"),
     ("Light of a volume that more than one diffuse surface scatters", "left out"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
     (

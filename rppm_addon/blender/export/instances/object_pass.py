@@ -115,7 +115,7 @@ class ObjectPass:
 
     def _place(self, depsgraph: bpy.types.Depsgraph, selection: Selection) -> None:
         """Place all that a slice has time for. Raises Unfinished when it is over."""
-        use_surfaces, may_have_hair = self._context.use_surfaces, self._context.may_have_hair
+        use_surfaces, may_have_hair = self._context.filter.surfaces, self._context.may_have_hair
         self._reader.instance_attributes.depsgraph = depsgraph
         self._particles.begin(depsgraph.scene_eval.frame_current_final)
         try:
