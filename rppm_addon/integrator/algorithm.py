@@ -81,7 +81,7 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
     for segment in range(context.settings.photon_segments):
         if segment > 0 and not photons.trace(context, segment):
             break
-        stages.medium_scattering.scatter_photons(context, photons, stages.photon_beams, segment)
+        stages.medium_scattering.scatter_photons(context, photons, stages.photon_beams, stages.media.reach, segment)
         photons.resolve(context, iteration, segment)
         photons.scatter(context, stages.subsurface, iteration, segment)
         yield
@@ -93,9 +93,10 @@ def store_photons(context: StageContext, stages: StageSet, learning: Learning, i
     listed = stages.photons.list_stored(context, estimator.photon_list, iteration)
     radii = learning.radii_for(iteration, listed)
     context.iteration_block.write_radii(radii)
-    stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume)
+    stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume, stages.media.reach)
     stages.photon_beams.prepare(context, iteration)
-    estimator.begin(context.settings, stages.photons.stored(context, listed, radii), iteration)
+    stored, in_media = stages.photons.stored(context, listed, radii), stages.medium_photons
+    estimator.begin(context.settings, stored, iteration, in_media.radius if in_media.photon_count else 0.0)
     return radii
 
 

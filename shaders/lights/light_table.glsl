@@ -16,6 +16,12 @@ uint light_of(uint photon) {
     return low;
 }
 
+// Light Falloff nodes: what a light gives may grow with a power of the distance, and be weakened near it.
+float distance_factor(Light light, float distance) {
+    float smoothed = light.smoothing > 0.0 ? distance * distance / (light.smoothing + distance * distance) : 1.0;
+    return light.falloff == 0.0 ? smoothed : smoothed * pow(max(distance, 1e-6), light.falloff);
+}
+
 // Where a ray meets the disk of a soft light that faces the ray's origin; 0 where it does not.
 float soft_light_distance(Light light, vec3 origin, vec3 direction) {
     vec3 to_center = light.position - origin;

@@ -47,12 +47,6 @@ float attenuation_toward(Light light, vec3 to_light) {
     return spread_attenuation(light, length(cross(to_light, light.normal)) / -dot(to_light, light.normal));
 }
 
-// Light Falloff nodes: what a light gives may grow with a power of the distance, and be weakened near it.
-float distance_factor(Light light, float distance) {
-    float smoothed = light.smoothing > 0.0 ? distance * distance / (light.smoothing + distance * distance) : 1.0;
-    return light.falloff == 0.0 ? smoothed : smoothed * pow(max(distance, 1e-6), light.falloff);
-}
-
 vec3 radiant_strength(Light light, vec3 direction) {
     return light.kind == LIGHT_SPOT ? light.strength * spot_attenuation(light, direction) : light.strength;
 }

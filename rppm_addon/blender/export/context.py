@@ -10,7 +10,7 @@ from .common.report import Report
 from .geometry.strands.curve_settings import CurveSettings, curve_settings
 from .images.images import ImageTable
 from .images.texture_limit import texture_limit
-from .view_layer.layers import LayerMasks, world_of
+from .view_layer.layers import LayerFilter, LayerMasks, world_of
 from .view_layer.light_linking import LightLinks
 
 
@@ -30,10 +30,9 @@ class ExportContext:
     culling: Culling = field(default_factory=Culling)
     """Culling of objects that the camera does not see; at first it leaves nothing out."""
     light_links: LightLinks = field(default_factory=LightLinks)
-    use_environment: bool = True
-    """Whether the view layer has the world's light."""
-    use_surfaces: bool = True
-    """Whether it has surfaces."""
+    filter: LayerFilter = field(default_factory=LayerFilter)
+    blurs_motion: bool = False
+    """Whether pictures are blurred by what moves."""
     curves: CurveSettings = field(default_factory=CurveSettings)
     is_render: bool = True
     """Whether Blender evaluated what renders show, and not viewports."""
@@ -65,5 +64,6 @@ class ExportContext:
         self.curves, self.is_render = curve_settings(depsgraph), depsgraph.mode == "RENDER"
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
-        self.use_environment, self.use_surfaces = layer.use_sky, layer.use_solid
+        self.filter = LayerFilter.of(layer)
+        self.blurs_motion = scene.render.use_motion_blur
         self.has_light_groups = len(depsgraph.view_layer.lightgroups) > 0

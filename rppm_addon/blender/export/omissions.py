@@ -61,12 +61,33 @@ def _has_transparent_glass_of_cycles_only(scene: bpy.types.Scene) -> bool:
     return scene.render.film_transparent and bool(_cycles(scene, "film_transparent_glass", False)) and not own
 
 
+def _has_moving_volumes(scene: bpy.types.Scene) -> bool:
+    return scene.render.use_motion_blur and any(_has_velocity(volume) for volume in bpy.data.volumes if volume.users)
+
+
+def _has_velocity(volume: bpy.types.Volume) -> bool:
+    names = {volume.velocity_grid, volume.velocity_x_grid, volume.velocity_y_grid, volume.velocity_z_grid} - {""}
+    return volume.grids.load() and any(grid.name in names for grid in volume.grids)
+
+
 OF_SCENES = (
     Omission(
         "Rolling Shutter",
         "all of the picture is exposed at once",
         ("render.use_motion_blur", "cycles.rolling_shutter_type"),
         lambda scene: scene.render.use_motion_blur and _cycles(scene, "rolling_shutter_type", "NONE") != "NONE",
+    ),
+    Omission(
+        "Motion Blur of volumes by their velocity",
+        "their grids are sharp; motion of the objects blurs them",
+        ("render.use_motion_blur",),
+        _has_moving_volumes,
+    ),
+    Omission(
+        "Biased volumes",
+        "light passes voxels exactly, as in Cycles without Biased; Step Rate and Max Steps have no effect",
+        ("cycles.volume_biased",),
+        lambda scene: bool(_cycles(scene, "volume_biased", False)),
     ),
     Omission(
         "Transparent Glass",

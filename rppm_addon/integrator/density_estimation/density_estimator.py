@@ -73,11 +73,14 @@ class DensityEstimator(Stage):
             return DensityEstimation.GRID
         return _faster.get(self._library, _UNDECIDED)
 
-    def begin(self, settings: RenderSettings, photons: StoredPhotons, iteration: Iteration) -> None:
-        """Take an iteration's photons."""
+    def begin(
+        self, settings: RenderSettings, photons: StoredPhotons, iteration: Iteration, medium_radius: float = 0.0
+    ) -> None:
+        """Take an iteration's photons. medium_radius: within which the sums take photons in media, meters. The quanta
+        of small surfaces would be too coarse for these."""
         self._wanted, self._photons, self._prepared = settings.density_estimation, photons, None
         self.sums.count_in(
-            radiance_quantum(photons.photon_flux, max(photons.radii.caustic, photons.radii.wide)),
+            radiance_quantum(photons.photon_flux, max(photons.radii.caustic, photons.radii.wide, medium_radius)),
             iteration.roulette_seed if settings.use_splat_roulette else 0,
             iteration.roulette_seed if iteration.precedes_learning else 0,
         )

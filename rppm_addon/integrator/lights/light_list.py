@@ -3,7 +3,7 @@
 
 import logging
 import math
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from .light_maps import LightMaps
 from .light_records import LIGHT, LightFlag, LightShape
 from .portals import is_portal
 from .sources import ENVIRONMENT, SURFACES, VOLUMES, source_name
-from .spheres import holds_surfaces
+from .spheres import holds_medium, holds_surfaces
 
 log = logging.getLogger(__name__)
 
@@ -49,13 +49,17 @@ class LightList:
         """Whether the last light is the world."""
         return self.names[-1:] == [ENVIRONMENT]
 
-    def add_light_objects(self, scene: Scene, geometry: Geometry, maps: LightMaps, radius: float) -> None:
-        """Add the scene's light objects but for portals. radius: that of the scene, meters."""
+    def add_light_objects(
+        self, scene: Scene, geometry: Geometry, maps: LightMaps, radius: float, media: Set[int]
+    ) -> None:
+        """Add the scene's light objects but for portals. radius: that of the scene, meters; media: materials that fill
+        the inside of what they are on."""
         for index, light in enumerate(scene.lights):
             if is_portal(light):
                 continue
             record, power = light_entry(light, radius)
             record["flags"] |= LightFlag.HOLDS_SURFACES * holds_surfaces(light, scene, geometry)
+            record["flags"] |= LightFlag.HOLDS_MEDIUM * holds_medium(light, scene, geometry, media)
             record["link"] = self.links.of_light(light)
             nodes = maps.nodes.get(index)
             if nodes is not None:

@@ -54,6 +54,8 @@ class LightFlag(enum.IntFlag):
     """The light is that of the world's photons which leave through portals. It is chosen for nothing else."""
     HOLDS_SURFACES = 512
     """Surfaces lie within the light's radius. A sphere lights them from within, and they hide parts of a disk."""
+    HOLDS_MEDIUM = 1024
+    """The light is a sphere, with a medium within it that it lights from within."""
 
 
 Constants("Lights", LIGHT=LightShape)

@@ -176,7 +176,7 @@ class Lights(BufferSet):
         if not keep_light_objects:
             self.light_maps.build(scene.lights, scene.images, materials)
         lights = LightList()
-        lights.add_light_objects(scene, geometry, self.light_maps, radius)
+        lights.add_light_objects(scene, geometry, self.light_maps, radius, materials.media.materials)
         refuse_too_many(
             scene, geometry, materials, lambda triangles: self._light_tree.refuse(len(scene.lights), triangles)
         )

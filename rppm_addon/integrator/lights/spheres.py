@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lights with a radius, and whether surfaces lie within it."""
+"""Lights with a radius, and whether surfaces or media lie within it."""
+
+from collections.abc import Set
 
 import numpy as np
 
@@ -28,6 +30,19 @@ def holds_surfaces(light: Light, scene: Scene, geometry: Geometry) -> bool:
         if mesh.triangle_count > _MAX_TRIANGLES or _reaches(mesh, geometry.matrices[number], center, radius):
             return True
     return False
+
+
+def holds_medium(light: Light, scene: Scene, geometry: Geometry, media: Set[int]) -> bool:
+    """True where a light is a sphere that may have a medium in it; media: materials that fill the inside of what they
+    are on. A disk lights its surroundings from one side only."""
+    if not light.radius > 0.0 or light.soft_falloff or light.kind not in (LightKind.POINT, LightKind.SPOT):
+        return False
+    if scene.world.volume is not None:
+        return True
+    center = np.asarray(light.matrix, np.float64)[:3, 3]
+    with np.errstate(invalid="ignore"):
+        met = np.flatnonzero(_distances_to_boxes(center, geometry.boxes[:, 0], geometry.boxes[:, 1]) <= light.radius)
+    return any(not media.isdisjoint(geometry.placements[number].instance.materials) for number in met.tolist())
 
 
 def _distances_to_boxes(point: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:

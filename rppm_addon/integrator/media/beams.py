@@ -80,6 +80,9 @@ _EXPECTED_BEAMS = 16
 """Beams that a camera ray is to meet in the first iteration."""
 _FIRST_PIXELS, _FEWEST_PIXELS = 1.5, 0.6
 """Smallest radius in the first iteration and in all, pixels."""
+_NEAR = 0.25
+"""Distance from the camera, over the side of a cube as large as the media, below which beams get no narrower in the
+first iteration. As wide as pixels, one that passes near the camera would be a bright streak."""
 _SEGMENTS = 8
 """Segments of straight camera paths onto which beams are drawn."""
 
@@ -139,8 +142,11 @@ class PhotonBeams(Stage):
             return
         self.beam_count = int(self.beams.read(np.uint32, 1)[0])
         shrinkage = shrinkage_in(1, iteration.number, context.settings.alpha)
-        self.radius = _EXPECTED_BEAMS * self._size / (2.0 * max(self.beam_count, 1)) * shrinkage
         self.radius_pixels = max(_FIRST_PIXELS * shrinkage, _FEWEST_PIXELS)
+        camera = context.scene.camera
+        pixel = (camera.window[1] - camera.window[0]) / camera.width
+        nearest = 0.0 if camera.orthographic else _NEAR * self._size * shrinkage * pixel * self.radius_pixels
+        self.radius = max(_EXPECTED_BEAMS * self._size / (2.0 * max(self.beam_count, 1)) * shrinkage, nearest)
 
     def splat(
         self,

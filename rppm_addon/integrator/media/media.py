@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The media that paths begin in: around the camera and the lights."""
 
+import math
+
 import numpy as np
 
 from ...gl.buffer_sets import StorageBuffer
@@ -30,6 +32,9 @@ Record("EnterMediaParameters", camera_position="vec3", box_count="uint", has_cam
 _MAX_BOXES = 32
 """Boxes that points are looked for in; what is more lies in the last together."""
 
+_FLATTEST = 0.25
+"""Least extent of the box around what there is in the world's medium, over the largest."""
+
 
 class Media(Stage):
     """Paths begin in the media that surround the camera or their light (shaders/media/crossings.glsl).
@@ -51,6 +56,8 @@ class Media(Stage):
         self._box_count = 0
         self.volume = 0.0
         """Volume in which media lie, m^3: that of the boxes around them, or of the scene."""
+        self.reach = 0.0
+        """Radius, meters, of the scene, or of the cube that is as large as the media where the scene is smaller."""
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -76,6 +83,7 @@ class Media(Stage):
         self._scene = context.scene
         boxes = _boxes(context.scene, context.materials.media.materials)
         self.volume = _volume(context, boxes)
+        self.reach = max(context.geometry.radius, 0.5 * math.sqrt(3.0) * math.cbrt(self.volume))
         self._box_count = len(boxes)
         if self._box_count:
             self._find(context, boxes)
@@ -104,15 +112,15 @@ class Media(Stage):
 
 def _volume(context: StageContext, boxes: np.ndarray) -> float:
     """Volume of boxes (n, 2, 3), but not more than that of the scene; where the world's medium scatters, that of the
-    scene with its camera and lights, m^3."""
+    scene with its camera and lights, m^3, which may lie in one plane."""
     low, high = context.geometry.bounds_low, context.geometry.bounds_high
     around_everything = context.materials.media.world_scatters
     if around_everything:
         seen = [context.scene.camera.matrix[:3, 3], *(light.matrix[:3, 3] for light in context.scene.lights)]
         low, high = np.minimum(low, np.min(seen, axis=0)), np.maximum(high, np.max(seen, axis=0))
+        extents = np.maximum(high - low, _FLATTEST * max(float(np.max(high - low)), 1e-3))
+        return float(np.prod(extents))
     whole = float(np.prod(np.maximum(high - low, 1e-3)))
-    if around_everything:
-        return whole
     extents = boxes[:, 1].astype(np.float64) - boxes[:, 0]
     return min(float(np.prod(extents, axis=1).sum()), whole)
 

@@ -41,7 +41,7 @@ StorageBlock("MediumPhotons", "uint medium_photon_count; uint medium_photons[];"
 _EXPECTED_PHOTONS = 8
 """Photons in the kernel of the first iteration, where they lie evenly in the media."""
 _WIDEST = 0.1
-"""Largest radius over the radius of the scene."""
+"""Largest radius over Media.reach."""
 _FEWEST_BUCKETS = 1 << 10
 _WIDEST_KERNEL = 2.5
 """Largest radius in dense media over that by the number of photons."""
@@ -77,8 +77,8 @@ class MediumPhotonMap(Stage):
         """Stage.is_needed: where materials or the world have a volume."""
         return sizes.features.has_media
 
-    def build(self, context: StageContext, photons: Photons, iteration: Iteration, volume: float) -> None:
-        """Sort the photons of an iteration; ``volume``: of the media, m^3."""
+    def build(self, context: StageContext, photons: Photons, iteration: Iteration, volume: float, reach: float) -> None:
+        """Sort the photons of an iteration; ``volume``: of the media, m^3; ``reach``: Media.reach."""
         self.photon_count = 0
         if not (self.is_on and context.materials.media.scatter):
             return
@@ -92,7 +92,7 @@ class MediumPhotonMap(Stage):
             if not self.photon_count:
                 return
             self._shrinkage = shrinkage_in(3, iteration.number, context.settings.alpha)
-            self.radius = self._first_radius(context, volume) * self._shrinkage
+            self.radius = self._first_radius(volume, reach) * self._shrinkage
             buckets = self._buckets
             self._grid.require_items(buckets)
             self._grid.clear()
@@ -137,10 +137,10 @@ class MediumPhotonMap(Stage):
                     },
                 )
 
-    def _first_radius(self, context: StageContext, volume: float) -> float:
+    def _first_radius(self, volume: float, reach: float) -> float:
         """Return the radius of the first iteration with as many photons, meters."""
         ball = _EXPECTED_PHOTONS * volume / self.photon_count
-        return min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * context.geometry.radius)
+        return min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * reach)
 
     @property
     def _buckets(self) -> int:

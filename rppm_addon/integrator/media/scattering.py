@@ -15,7 +15,11 @@ Record(
     least_free_path="float",
     beam_probability="float",
     longest_beam="float",
+    has_falloff="uint",
 )
+
+_LONGEST_BEAM = 40.0
+"""Largest length of a beam over Media.reach. In thin fog of the world photons fly far."""
 
 
 class MediumScattering(Stage):
@@ -32,9 +36,11 @@ class MediumScattering(Stage):
         """Stage.is_needed: where materials or the world have a volume."""
         return sizes.features.has_media
 
-    def scatter_photons(self, context: StageContext, photons: Photons, beams: PhotonBeams, segment: int) -> None:
+    def scatter_photons(
+        self, context: StageContext, photons: Photons, beams: PhotonBeams, reach: float, segment: int
+    ) -> None:
         """Scatter some of the photons whose rays have been traced, and store their beams; surfaces are to scatter the
-        other photons."""
+        other photons. reach: Media.reach."""
         if not (self.is_on and context.materials.media.scatter):
             return
         with context.timers.stage("photon scattering in media"):
@@ -46,6 +52,7 @@ class MediumScattering(Stage):
                     "segment": segment,
                     "least_free_path": beams.least_free_path,
                     "beam_probability": beams.probability(photons.photon_count),
-                    "longest_beam": 4.0 * context.geometry.radius,
+                    "longest_beam": _LONGEST_BEAM * reach,
+                    "has_falloff": context.lights.has_falloff,
                 },
             )

@@ -9,7 +9,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..device_scene.stage_context import StageContext
 
-Record("EmitParameters", count="uint", target_count="uint")
+Record("EmitParameters", world_transmittance="vec3", count="uint", target_count="uint", fills_world="uint")
 Record("FalloffParameters", count="uint")
 
 
@@ -30,7 +30,12 @@ class PhotonEmission:
         self._emit.run(
             count,
             {**context.blocks, **photons},
-            {"count": count, "target_count": context.lights.target_count},
+            {
+                "count": count,
+                "target_count": context.lights.target_count,
+                "world_transmittance": context.materials.media.world_transmittance,
+                "fills_world": context.materials.media.fills_world,
+            },
         )
 
     def apply_falloff(self, context: StageContext, photons: Mapping[str, Bindable], count: int) -> None:

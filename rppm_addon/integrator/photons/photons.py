@@ -129,7 +129,7 @@ class Photons(Stage):
             )
         with context.timers.stage("first photon hits"):
             self.first_hits.find(context, rays, hits, self._active)
-            if context.lights.has_falloff:
+            if context.lights.has_falloff and not context.materials.media.scatter:  # which have them where they scatter
                 self._emission.apply_falloff(context, self.blocks, self.photon_count)
             if context.lights.are_cut:
                 self._emission.cut_soft_lights(context, self.blocks, self._active)

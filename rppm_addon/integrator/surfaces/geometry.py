@@ -28,6 +28,7 @@ from ..common.stage_sizes import StageSizes
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
 from .hit_triangles import HitTriangles
 from .object_triangles import ObjectTriangles
+from .volume_insets import inset_matrix, volumes_alone
 
 log = logging.getLogger(__name__)
 
@@ -200,6 +201,9 @@ class Geometry(BufferSet):
         instances = [scene.instances[index] for index in chosen]
         which = np.array([places[instance.mesh] for instance in instances], np.int64)
         self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
+        for number in volumes_alone(instances, scene.materials):
+            box = np.array(require(bounds[which[number]]))
+            self.matrices[number] = inset_matrix(self.matrices[number], box, number)
         is_expanded = np.ones(len(chosen), bool)
         if is_instanced is not None:  # rays go on in object space, which flat ones do not have
             is_expanded = ~(is_instanced[chosen] & affine_inverses(self.matrices).any(axis=(1, 2)))

@@ -44,6 +44,10 @@ class MediaTables(BufferSet):
         """Whether any medium scatters light."""
         self.world_scatters = False
         """Whether the world's medium scatters light."""
+        self.fills_world = False
+        """Whether the world has a medium that is the same everywhere, and weakens light."""
+        self.world_transmittance = (1.0, 1.0, 1.0)
+        """Fraction of the light from infinitely far away that the world's medium lets through, by channel: 0 or 1."""
         self.places = MediumPlaces({}, None, 0)
         """Media that vary."""
         self._records, self._material_count = MATERIAL.zeros(1), 1
@@ -143,7 +147,11 @@ class MediaTables(BufferSet):
         self._phase_functions.upload(np.concatenate([functions for _, functions in listed] + [PHASE_FUNCTION.zeros(1)]))
         self.emit = any(record["emission"].any() for record, _ in listed)
         self.scatter = any(record["scattering"].any() for record, _ in listed)
-        self.world_scatters = bool(listed[0][0]["scattering"].any())
+        world = listed[0][0]
+        self.world_scatters = bool(world["scattering"].any())
+        weakened = (world["absorption"] + world["scattering"] > 0.0) & (self.places.world is None)
+        self.fills_world = bool(weakened.any())
+        self.world_transmittance = tuple(np.where(weakened, 0.0, 1.0).tolist())
 
 
 def _medium(interior: Interior, evaluate: Evaluate) -> _Medium:

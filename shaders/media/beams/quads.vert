@@ -48,7 +48,7 @@ void main() {
     vec3 first = to_camera(photon_beams[beam_number].origin);
     vec3 last = to_camera(photon_beams[beam_number].origin + extent * photon_beams[beam_number].direction);
     gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
-    if (!clip_beam(first, last, orthographic ? 0.0 : max(camera.clip_start, 1.0e-3 * extent))) return;
+    if (!clip_beam(first, last, orthographic ? 0.0 : max(camera.clip_start, 1.0e-4 * extent))) return;
     vec2 from = to_pixel(first, orthographic), to = to_pixel(last, orthographic), along = to - from;
     float size = length(along), from_radius = pixel_radius(first, orthographic),
           to_radius = pixel_radius(last, orthographic);

@@ -23,6 +23,7 @@ uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
+#include "media/in_scattering/spot_cone.glsl"
 readonly buffer Closures;
 readonly buffer Rays;
 readonly buffer CameraPaths;
@@ -47,10 +48,10 @@ struct Equiangular {
     float last;
 };
 
-Equiangular equiangular(MediumSegment segment, vec3 center) {
+Equiangular equiangular(MediumSegment segment, vec3 center, vec2 range) {
     float nearest = dot(center - segment.ray.origin, segment.ray.direction);
     float height = max(length(center - segment.ray.origin - nearest * segment.ray.direction), 1e-6);
-    return Equiangular(nearest, height, atan(-nearest, height), atan(segment.far - nearest, height));
+    return Equiangular(nearest, height, atan(range.x - nearest, height), atan(range.y - nearest, height));
 }
 
 float equiangular_distance(Equiangular angles, float u) {
@@ -58,7 +59,8 @@ float equiangular_distance(Equiangular angles, float u) {
 }
 
 float equiangular_pdf(Equiangular angles, float distance) {
-    float along = distance - angles.nearest;
+    float along = distance - angles.nearest, angle = atan(along, angles.height);
+    if (angle < angles.first - 1e-6 || angle > angles.last + 1e-6) return 0.0;
     return angles.height / (max(angles.last - angles.first, 1e-20) * (angles.height * angles.height + along * along));
 }
 
@@ -109,9 +111,12 @@ void main() {
     if (bounces_of(path.depth) > light.max_bounces || (light.flags & RAY_VOLUME_SCATTER) == 0u) return;
     bool has_place = light.kind != LIGHT_SUN && light.kind != LIGHT_WORLD;
     Equiangular angles = Equiangular(0.0, 1.0, 0.0, 1.0);
+    vec2 range = vec2(0.0, far);
+    // Of a ray that passes a spot light's cone by, nothing is lit.
+    if (light.kind == LIGHT_SPOT && !within_spot_cone(light, ray.origin, ray.direction, far, range)) return;
     if (has_place) {
-        angles = equiangular(segment, light_center(light, choice.triangle));
-        if (u.w < 0.5) distance = clamp(equiangular_distance(angles, u.z), 0.0, far);
+        angles = equiangular(segment, light_center(light, choice.triangle), range);
+        if (u.w < 0.5) distance = clamp(equiangular_distance(angles, u.z), range.x, range.y);
     }
     float pdf = distance_pdf(segment, has_place, angles, distance);
     vec3 position = ray.origin + distance * ray.direction;

@@ -25,6 +25,8 @@ readonly buffer PhaseFunctions;
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
 #include "media/thin_media.glsl"
+#include "lights/light_table.glsl"
+#include <LightFlags>
 readonly buffer Hits;
 buffer Rays;
 buffer PhotonPaths;
@@ -105,6 +107,26 @@ void sample_next_ray(uint index, PhotonPath path, PlaceOnRay at, vec3 weight, ve
         Ray(at.origin + at.distance * at.direction, NO_TRIANGLE, direction, survives ? INFINITY_DISTANCE : 0.0);
 }
 
+// Of the light of a photon that comes straight from a lamp, what the lamp gives to a point of the photon's ray: Light
+// Falloff nodes count by the distance, and a soft light faces each point with a disk that the ray meets, or misses, a
+// little behind where it began (photon_emission/falloff.comp).
+vec3 lamp_factor(uint index, PhotonPath path, Ray ray, float distance) {
+    if (parameters.segment > 0u || parameters.has_falloff == 0u) return vec3(1.0);
+    Light light = lights[light_of(index)];
+    float factor = distance_factor(light, distance);
+    if ((light.flags & LIGHT_SOFT) == 0u) return vec3(factor);
+    float behind = soft_light_distance(light, ray.origin + distance * ray.direction, -ray.direction) - distance;
+    if (!(behind > -distance)) return vec3(0.0);
+    behind = max(behind, 0.0);
+    return factor * segment_transmittance(path.flags, ray.origin - behind * ray.direction, ray.direction, behind);
+}
+
+// Changes the flux of a path that passes the media, or ends it.
+void pass_on(uint index, vec3 flux) {
+    photon_paths[index].flux = flux;
+    if (!(largest(flux) > 0.0)) rays[index].maximum_distance = 0.0;
+}
+
 void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
@@ -112,9 +134,12 @@ void main() {
     PhotonPath path = photon_paths[index];
     Ray ray = rays[index];
     if (!(ray.maximum_distance > 0.0) || !(largest(path.flux) > 0.0)) return;
-    if (!path_may_scatter(path.flags)) return;
     bool escapes = hits[index].triangle == NO_TRIANGLE;
-    float far = escapes ? INFINITY_DISTANCE : hits[index].distance;
+    float far = escapes ? ray.maximum_distance : hits[index].distance;
+    if (!path_may_scatter(path.flags)) {
+        if (!escapes) pass_on(index, path.flux * lamp_factor(index, path, ray, far));
+        return;
+    }
     RandomSequence random = random_sequence(iteration.seed, iteration.number, STAGE_MEDIA, parameters.segment, index);
     FreeFlight flight = sample_free_flight(path.flags, ray, far, next_random2(random));
     bool passes = !(flight.pdf > 0.0);
@@ -123,10 +148,12 @@ void main() {
         // Surfaces weaken the flux by the transmittance, but nothing weakens what escapes.
         vec3 weight = vec3(1.0 / max(flight.passing, 1e-30));
         if (escapes) weight *= segment_transmittance(path.flags, ray.origin, ray.direction, far);
-        photon_paths[index].flux = path.flux * weight;
+        else weight *= lamp_factor(index, path, ray, far);
+        pass_on(index, path.flux * weight);
         return;
     }
-    if (is_hidden(path)) {
+    path.flux *= lamp_factor(index, path, ray, flight.distance);
+    if (is_hidden(path) || !(largest(path.flux) > 0.0)) {
         end_path(index, path, ray);
         return;
     }

@@ -52,8 +52,9 @@ bool is_hidden_from_media(Light light, Emission emission) {
 }
 
 // Rays that start far away lose precision: they start where they enter the scene's sphere. False:
-// they pass it by.
+// they pass it by. Where a medium fills the world, light is weakened and scattered on the whole way.
 bool enter_scene(inout vec3 origin, vec3 direction) {
+    if (parameters.fills_world != 0u) return true;
     vec3 offset = origin - iteration.scene_center;
     float along = dot(offset, direction);
     float outside = dot(offset, offset) - iteration.scene_radius * iteration.scene_radius;
@@ -93,6 +94,7 @@ void main() {
     }
     Emission emission = emit_photon(light, choice);
     vec3 flux = emission.flux / float(max(light.photon_count, 1u));
+    if (light.kind == LIGHT_SUN || light.kind == LIGHT_WORLD) flux *= parameters.world_transmittance;
     bool dark = !(largest(flux) > 0.0);
     uint path_flags = PHOTON_DIRECT | ((light.flags & RAY_DIFFUSE) == 0u ? PHOTON_NOT_DIFFUSE : 0u)
                       | ((light.flags & RAY_GLOSSY) == 0u ? PHOTON_NOT_GLOSSY : 0u)

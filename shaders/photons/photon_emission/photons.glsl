@@ -50,14 +50,20 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
     return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
 }
 
-// Of the photons of a sphere with surfaces in it, those that light these: from its far side to its near one.
-const float WITHIN_FRACTION = 0.25;
+// Fractions of the photons of a sphere with surfaces or a medium in it that light these: from its far side to its near.
+const float WITHIN_FRACTION = 0.25, WITHIN_FRACTION_MEDIUM = 1.0 / 16.0;
 
 // Radiant intensity from the light's center; a sphere of uniform radiance shows the same disk to every
-// direction. A soft light is that disk. A sphere shines outward from its near side, and inward from its far side.
+// direction. A soft light is that disk. A sphere shines outward from its near side, and inward from its far side, where
+// a spot light shines alike to all sides (Cycles).
 Emission emit_from_point(Light light, EmissionChoice choice) {
+    float part = 0.0;
+    if ((light.flags & LIGHT_HOLDS_MEDIUM) != 0u) part = WITHIN_FRACTION_MEDIUM;
+    if ((light.flags & (LIGHT_HOLDS_SURFACES | LIGHT_SOFT)) == LIGHT_HOLDS_SURFACES) part = WITHIN_FRACTION;
+    bool within = choice.part < part, spot = light.kind == LIGHT_SPOT && !within;
+    part = within ? part : 1.0 - part;
     float cones = target_cones(light.position);
-    bool has_targets = cones > 0.0, spot = light.kind == LIGHT_SPOT;
+    bool has_targets = cones > 0.0;
     vec3 direction = choice.aimed && has_targets
                          ? sample_target_direction(light.position, cones, choice.target, choice.direction)
                      : spot ? sample_cone(light.normal, light.spread_scale, choice.direction)
@@ -68,19 +74,15 @@ Emission emit_from_point(Light light, EmissionChoice choice) {
     float aimed = has_targets ? target_direction_pdf(light.position, cones, direction) : 0.0;
     vec2 square = spot ? cone_to_square(light.normal, light.spread_scale, direction) : sphere_to_square(direction);
     float pdf = mixed_pdf(light, plain, choice.place, square, aimed, has_targets, choice);
-    float forward, reach = INFINITY_DISTANCE, part = 1.0;
+    float forward, reach = INFINITY_DISTANCE;
     vec3 origin = light.position + sample_cross_section(light.radius, direction, choice.place, forward);
     if ((light.flags & LIGHT_SOFT) != 0u) forward = 0.0;
-    else if ((light.flags & LIGHT_HOLDS_SURFACES) != 0u) {
-        bool within = choice.part < WITHIN_FRACTION;
-        part = within ? WITHIN_FRACTION : 1.0 - WITHIN_FRACTION;
-        if (within) {
-            reach = 2.0 * forward;
-            forward = -forward;
-        }
+    if (within) {
+        reach = 2.0 * forward;
+        forward = -forward;
     }
-    return Emission(origin + forward * direction, NO_TRIANGLE, direction,
-                    radiant_strength(light, direction) / (part * pdf), pdf, reach);
+    vec3 strength = within ? light.strength : radiant_strength(light, direction);
+    return Emission(origin + forward * direction, NO_TRIANGLE, direction, strength / (part * pdf), pdf, reach);
 }
 
 // From a point of a surface, with the pdf by area that the point was chosen by.

@@ -50,7 +50,7 @@ fast_gi_method ao_bounces ao_bounces_render diffuse_bounces glossy_bounces trans
 _OF_WHAT_IS_NAMED = """
 max_subdivisions dicing_camera offscreen_dicing_scale film_transparent_roughness
 rolling_shutter_duration volume_bounces volume_step_rate
-volume_preview_step_rate volume_max_steps volume_biased
+volume_preview_step_rate volume_max_steps
 """
 
 WITHOUT_BEARING = {
@@ -88,7 +88,7 @@ WITHOUT_BEARING = {
     "CameraDOFSettings": "",
     "ViewLayer": """
         eevee active_aov active_aov_index active_lightgroup active_lightgroup_index
-        use_pass_cryptomatte_accurate use_ao use_strand use_volumes use_grease_pencil
+        use_pass_cryptomatte_accurate use_ao use_strand use_grease_pencil
         active_layer_collection has_export_collections use_freestyle freestyle_settings
     """,
     "RenderSettings": """

@@ -65,6 +65,7 @@ VOLUMES = (
         "Light groups of objects that share a material whose volume emits light",
         "what camera rays and final gathers find of it counts for the group of one of them",
     ),
+    ("Motion Blur of the gas of fluid domains", "gas is sharp"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
     (
         "Light Linking of what has a volume that scatters",

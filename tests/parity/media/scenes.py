@@ -88,6 +88,14 @@ def overlapping_volumes() -> None:
     light("AREA", 150.0, place(at=(0.0, 0.0, 3.5)), shape="SQUARE", size=1.0)
 
 
+def touching_volumes() -> None:
+    """Two boxes of other media side by side, with a face of each in the same place."""
+    _floor_and_camera()
+    box((0.6, 0.6, 0.6), medium("Left", scatter(1.0, (1.0, 0.8, 0.6))), place(at=(-0.6, 0.0, 1.0)))
+    box((0.6, 0.6, 0.6), medium("Right", scatter(0.7, (0.5, 0.8, 1.0))), place(at=(0.6, 0.0, 1.0)))
+    light("POINT", 200.0, place(at=(1.0, -1.5, 3.2)), shadow_soft_size=0.1)
+
+
 def glass_ball_in_fog() -> None:
     """A ball of glass gathers light in a box of fog."""
     _floor_and_camera()
@@ -113,6 +121,7 @@ SCENES = {
     "fog in a cube": fog_in_a_cube,
     "spot in the world's fog": spot_in_the_worlds_fog,
     "overlapping volumes": overlapping_volumes,
+    "touching volumes": touching_volumes,
     "glass ball in fog": glass_ball_in_fog,
     "phase functions": phase_functions,
 }

@@ -42,7 +42,7 @@ def _floor() -> None:
 
 
 def _lamp(at: tuple[float, float, float]) -> None:
-    """It is small, as RPPM's photons begin on its surface, while Cycles lights the fog in it as well."""
+    """It is small: Cycles' MIS loses some of the light of the fog within it (test_scattered_light.py)."""
     light("POINT", 100.0, place(at=at), shadow_soft_size=0.02, use_soft_falloff=False)
 
 

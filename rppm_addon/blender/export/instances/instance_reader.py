@@ -85,6 +85,8 @@ class InstanceReader:
         kind = source.type
         if kind not in SURFACE_TYPES or (kind == "CURVES" and not self._context.curves.shown):
             return None
+        if not self._context.filter.volumes and (kind == "VOLUME" or (kind == "MESH" and is_gas_domain(source))):
+            return None
         visibility = visibility_of(source)
         if not is_seen(visibility):
             return None
@@ -115,6 +117,8 @@ class InstanceReader:
         multiplied: bpy.types.DepsgraphObjectInstance | None,
     ) -> InstanceDescription | None:
         """Describe a volume, or the gas of a fluid domain; None where it has no voxels."""
+        if self._context.blurs_motion and source.type == "MESH":
+            self._context.report.warn(f'Object "{source.name}": its gas is sharp, though Motion Blur is on')
         materials = [self._materials.of_volume(place) for place in self._material_slots(source)]
         mesh = self._mesh_index(
             source, GridSource(source), materials, source if multiplied is None else multiplied.parent

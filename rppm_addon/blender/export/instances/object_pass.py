@@ -134,7 +134,7 @@ class ObjectPass:
 
     def _place(self, depsgraph: bpy.types.Depsgraph, selection: Selection) -> None:
         """Place all that a slice has time for. Raises Unfinished when it is over."""
-        use_surfaces = self._context.use_surfaces
+        use_surfaces = self._context.filter.surfaces
         self._reader.instance_attributes.depsgraph = depsgraph
         self._particles.begin(depsgraph.scene_eval.frame_current_final)
         try:

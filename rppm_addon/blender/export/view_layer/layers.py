@@ -2,12 +2,29 @@
 """Effects of a view layer on a scene: other materials, another world, and collections that are masks."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import bpy
 
 from ....scene import RayVisibility
 
 _Mask = tuple[str, bool, bool]
+
+
+@dataclass(frozen=True)
+class LayerFilter:
+    """Kinds of things that a view layer has, by its panel Filter."""
+
+    environment: bool = True
+    """Whether it has the world's light."""
+    surfaces: bool = True
+    volumes: bool = True
+    """Whether it has volume objects and the gas of fluid domains. Volumes of materials are there anyway."""
+
+    @classmethod
+    def of(cls, layer: bpy.types.ViewLayer) -> "LayerFilter":
+        """Return what a view layer has."""
+        return cls(layer.use_sky, layer.use_solid, layer.use_volumes)
 
 
 def world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
@@ -21,7 +38,7 @@ def overrides_of(depsgraph: bpy.types.Depsgraph) -> tuple[object, ...]:
     override, world = layer.material_override, getattr(layer, "world_override", None)
     blocks = [None if block is None else block.original.session_uid for block in (override, world)]
     groups = _light_groups(depsgraph.view_layer, world_of(depsgraph))
-    return (*blocks, layer.use_sky, layer.use_solid, *_masks(layer.layer_collection), *groups)
+    return (*blocks, layer.use_sky, layer.use_solid, layer.use_volumes, *_masks(layer.layer_collection), *groups)
 
 
 def light_group_of(owner: bpy.types.Object | bpy.types.World) -> str:

@@ -39,6 +39,23 @@ def smoke_material(surface=True, density=1.0):
     return material
 
 
+def test_a_view_layer_leaves_volumes_out(scene, tmp_path):
+    volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values()))
+    add_mesh(scene, "Quad")
+    assert len(export(scene).instances) == 2
+    scene.view_layers[0].use_volumes = False
+    (instance,) = export(scene).instances
+    assert instance.object_name == "Quad"
+
+
+@pytest.mark.parametrize("blurs", [True, False])
+def test_velocity_that_blurs_nothing_is_named(scene, tmp_path, blurs):
+    volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values(), velocity=values((3,))))
+    scene.render.use_motion_blur = blurs
+    warnings = export(scene).warnings
+    assert any("velocity" in warning for warning in warnings) == blurs
+
+
 def test_a_file_becomes_a_box_of_voxels(scene, tmp_path):
     density, color = values(), values((3,))
     volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=density, color=color))

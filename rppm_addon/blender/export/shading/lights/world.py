@@ -37,7 +37,7 @@ def export_world(world: bpy.types.World | None, context: ExportContext) -> tuple
     """The environment, black where the scene has no world, and the suns of its skies, which no picture resolves."""
     if world is None:
         return World(), []
-    environment, suns = _environment(world, context) if context.use_environment else (World(), [])
+    environment, suns = _environment(world, context) if context.filter.environment else (World(), [])
     mist = world.mist_settings
     environment.mist = Mist(mist.start, mist.depth, _EXPONENTS[mist.falloff])
     environment.ambient_occlusion_distance = world.light_settings.distance
