@@ -254,6 +254,20 @@ void hold_subsurface_of(ShadingInstance instance, inout ClosureBuilder builder) 
 }
 #endif
 
+// Where the closure is.
+void set_place(Surface surface, Hit hit, uint material, ShadingInstance instance, inout ClosureBuilder builder) {
+    builder.closure.position = surface.position;
+    builder.closure.triangle = hit.triangle;
+    builder.closure.material = material;
+    builder.closure.distance = hit.distance;
+    builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
+    builder.closure.shading_normal = pack_unit_vector(builder.shading);
+#ifdef UNCORRECTED_BUMP
+    builder.closure.shading_normal = builder.closure.diffuse_normal;  // so that its slopes shadow nothing
+#endif
+    builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
+}
+
 void main() {
     uint place = invocation_index();
     if (place >= range_length(parameters.program)) return;
@@ -305,16 +319,7 @@ void main() {
     hold_out_and_catch(surface, instance, unseen, builder);
     if (!shines_there(surface, instance, ray.source_triangle)) builder.closure.emission = vec3(0.0);
     let_light_pass(surface, instance, flags, unseen, material, builder);
-    builder.closure.position = surface.position;
-    builder.closure.triangle = hit.triangle;
-    builder.closure.material = material;
-    builder.closure.distance = hit.distance;
-    builder.closure.geometric_normal = pack_unit_vector(surface.geometric);
-    builder.closure.shading_normal = pack_unit_vector(builder.shading);
-#ifdef UNCORRECTED_BUMP
-    builder.closure.shading_normal = builder.closure.diffuse_normal;  // so that its slopes shadow nothing
-#endif
-    builder.closure.flags |= uint(builder.lobes) << LOBE_COUNT_SHIFT | instance.terminator_flags;
+    set_place(surface, hit, material, instance, builder);
     make_usable(builder.closure);
     store(index, builder.closure);
 }

@@ -60,7 +60,7 @@ def test_without_a_library_it_renders_and_warns(lit, tmp_path, without_libraries
 def test_the_panels(scene, without_libraries):
     for panel, prefix in zip(PANELS, ("preview_", "")):
         record = drawn(panel, context_of(scene))
-        names = ["input_passes", "prefilter", "quality", *(["start_sample"] if prefix else [])]
+        names = ["input_passes", "prefilter", "quality", "use_gpu", *(["start_sample"] if prefix else [])]
         assert record.properties == [f"use_{prefix}denoising", *(f"{prefix}denoising_{name}" for name in names)]
         assert "Open Image Denoise is not there" in " ".join(record.labels)
 

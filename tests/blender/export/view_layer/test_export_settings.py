@@ -76,9 +76,9 @@ def test_a_viewport_has_settings_of_its_own(scene):
 
 
 def test_a_viewport_is_denoised_as_cycles_does_it(scene):
-    names = {"use_preview_denoising", *(f"preview_{name}" for name in VIEWPORT_DENOISING if "use" not in name)}
+    names = {"use_preview_denoising", *(f"preview_{name}" for name in VIEWPORT_DENOISING if name != "use_denoising")}
     assert names == {viewport_property(name) for name in VIEWPORT_DENOISING} <= {*dir(scene.cycles)}
-    for name in names - {"use_preview_denoising"}:
+    for name in names - {"use_preview_denoising", "preview_denoising_use_gpu"}:  # off at first
         assert getattr(scene.rppm, name) == getattr(scene.cycles, name), name
     scene.rppm.use_preview_denoising, scene.rppm.preview_denoising_start_sample = True, 5
     scene.rppm.preview_denoising_quality, scene.rppm.denoising_quality = "FAST", "BALANCED"
