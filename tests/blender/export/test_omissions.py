@@ -58,8 +58,35 @@ def look_around_with_both_eyes(scene):
     scene.camera.data.stereo.use_spherical_stereo = True
 
 
+def diced_by(name, value):
+    def use(scene):
+        subdivide(scene)
+        setattr(scene.cycles, name, scene.camera if value is None else value)
+
+    return use
+
+
+def of_cycles(name, value=True):
+    def use(scene):
+        setattr(scene.cycles, name, value)
+        scene.update_tag()  # as an edit in the window does
+
+    return use
+
+
+def fix_threads(scene):
+    scene.render.threads_mode = "FIXED"
+
+
 USES = {
     "Adaptive Subdivision": subdivide,
+    "Dicing Camera": diced_by("dicing_camera", None),
+    "Fast GI Approximation": of_cycles("use_fast_gi"),
+    "Max Subdivisions": diced_by("max_subdivisions", 3),
+    "Offscreen Scale": diced_by("offscreen_dicing_scale", 1.0),
+    "Sample Subset": of_cycles("use_sample_subset"),
+    "Sampling Pattern": of_cycles("sampling_pattern", "BLUE_NOISE"),
+    "Threads": fix_threads,
     "Rolling Shutter": roll,
     "Spherical Stereo": look_around_with_both_eyes,
     "Transparent Glass": see_through,
@@ -105,6 +132,30 @@ def test_passes_that_are_on_for_cycles_only(lit):
     assert "Denoising Data, Debug Sample Count;" in text and "Copy from Cycles" in text
     layer.rppm.use_pass_denoising_data = layer.rppm.use_pass_debug_sample_count = True
     assert not warnings_about(lit, "Passes that are on for Cycles only")
+
+
+@pytest.mark.parametrize("name", ["dicing_camera", "max_subdivisions", "offscreen_dicing_scale"])
+def test_settings_of_dicing_are_named_where_something_is_diced(lit, name):
+    of_cycles(name, lit.camera if name == "dicing_camera" else 7)(lit)
+    titles = ("Dicing Camera", "Max Subdivisions", "Offscreen Scale")
+    assert not [text for text in export(lit).warnings if text.startswith(titles)]
+
+
+def test_settings_of_view_layers_that_differ_from_those_of_cycles(lit):
+    """They are named where they count, and no more once they are copied."""
+    layer = lit.view_layers[0]
+    layer.cycles.use_denoising, lit.cycles.use_layer_samples = False, "BOUNDED"
+    assert not export(lit).warnings
+    lit.rppm.use_denoising, layer.samples = True, 5
+    denoising, samples = export(lit).warnings
+    assert (
+        denoising.startswith("Denoising of the view layer is off for Cycles only") and "Copy from Cycles" in denoising
+    )
+    assert samples.startswith("Layer Samples is Bounded for Cycles and Use for RPPM")
+    lit.cycles.use_denoising = True
+    lit.update_tag()
+    bpy.ops.rppm.copy_from_cycles()
+    assert not export(lit).warnings and not export(lit).settings.use_denoising
 
 
 def test_a_viewport_follows_edits(lit):

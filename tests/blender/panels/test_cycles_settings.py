@@ -62,6 +62,17 @@ def test_passes_of_all_view_layers(scene):
     assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True, True, True]
 
 
+def test_denoising_and_samples_of_view_layers(scene):
+    other = scene.view_layers.new("Other")
+    other.cycles.use_denoising, scene.cycles.use_layer_samples = False, "BOUNDED"
+    bpy.ops.rppm.copy_from_cycles()
+    assert [layer.rppm.use_denoising for layer in scene.view_layers] == [True, False]
+    assert scene.rppm.use_layer_samples == "BOUNDED"
+    other.rppm.use_denoising, scene.rppm.use_layer_samples = True, "IGNORE"
+    bpy.ops.rppm.copy_to_cycles()
+    assert other.cycles.use_denoising and scene.cycles.use_layer_samples == "IGNORE"
+
+
 def test_settings_of_light_paths(scene):
     cycles, own = scene.cycles, scene.rppm
     cycles.sample_clamp_direct, cycles.sample_clamp_indirect = 2.0, 10.0

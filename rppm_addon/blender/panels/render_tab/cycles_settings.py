@@ -41,10 +41,13 @@ SHARED = {
         for what in ("use_{}adaptive_sampling", "{}adaptive_threshold", "{}adaptive_min_samples")
         for name in (what.format(""), what.format("preview_"))
     },
+    "use_layer_samples": "use_layer_samples",
     "film_exposure": "film_exposure",
     "pixel_filter_type": "pixel_filter_type",
 }
 """RPPM's properties and Cycles' that stand for the same; transparent film is one property for both."""
+SHARED_OF_LAYERS = {"use_denoising": "use_denoising", **OF_CYCLES}
+"""Cycles' switches of view layers, with the add-on's that stand for the same."""
 _LIMITS_OF_PARTS = ("max_camera_bounces", "max_photon_bounces")
 _LEAST_AUTOMATIC_THRESHOLD = 0.001
 
@@ -80,7 +83,7 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
         own, cycles = context.scene.rppm, context.scene.cycles
         _copy(cycles, own, ((other, name) for name, other in SHARED.items()))
         for layer in context.scene.view_layers:
-            _copy(layer.cycles, layer.rppm, OF_CYCLES.items())
+            _copy(layer.cycles, layer.rppm, SHARED_OF_LAYERS.items())
         for name in _LIMITS_OF_PARTS:
             own.property_unset(name)
         for prefix in ("", "preview_"):
@@ -100,7 +103,7 @@ class RPPM_OT_copy_to_cycles(_CopySettings):
         """Copy."""
         _copy(context.scene.rppm, context.scene.cycles, SHARED.items())
         for layer in context.scene.view_layers:
-            _copy(layer.rppm, layer.cycles, ((own, other) for other, own in OF_CYCLES.items()))
+            _copy(layer.rppm, layer.cycles, ((own, other) for other, own in SHARED_OF_LAYERS.items()))
         return {"FINISHED"}
 
 
