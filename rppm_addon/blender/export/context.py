@@ -34,6 +34,8 @@ class ExportContext:
     """Whether the view layer has the world's light."""
     use_surfaces: bool = True
     """Whether it has surfaces."""
+    use_volumes: bool = True
+    """Whether it has volume objects and baked gas; fog in meshes and in the world is there in any case."""
     curves: CurveSettings = field(default_factory=CurveSettings)
     is_render: bool = True
     """Whether Blender evaluated what renders show, and not viewports."""
@@ -66,4 +68,5 @@ class ExportContext:
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
         self.use_environment, self.use_surfaces = layer.use_sky, layer.use_solid
+        self.use_volumes = getattr(layer, "use_volumes", True)
         self.has_light_groups = len(depsgraph.view_layer.lightgroups) > 0

@@ -55,6 +55,7 @@ class RPPM_PT_filter(RppmPanel, bpy.types.Panel):
         include.prop(layer, "use_sky", text="Environment")
         include.prop(layer, "use_solid", text="Surfaces")
         include.prop(layer, "use_strand", text="Curves")
+        include.prop(layer, "use_volumes", text="Volumes")
         use = self.layout.column(heading="Use")
         if hasattr(layer, "use_motion_blur"):  # Blender 5
             row = use.row()

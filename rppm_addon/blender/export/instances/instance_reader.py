@@ -121,7 +121,9 @@ class InstanceReader:
         visibility: RayVisibility,
         multiplied: bpy.types.DepsgraphObjectInstance | None,
     ) -> InstanceDescription | None:
-        """Describe a volume, or the gas of a fluid domain; None where it has no voxels."""
+        """Describe a volume, or the gas of a fluid domain; None without voxels or in a view layer without volumes."""
+        if not self._context.use_volumes:
+            return None
         materials = [self._materials.of_volume(place) for place in self._material_slots(source)]
         mesh = self._mesh_index(
             source, GridSource(source), materials, source if multiplied is None else multiplied.parent

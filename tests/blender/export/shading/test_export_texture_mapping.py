@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What texture nodes do to their coordinates, and skies in materials."""
+"""Texture mapping of texture nodes, and skies in materials."""
 
 import pytest
 from blender_scenes import export, export_graph, set_world

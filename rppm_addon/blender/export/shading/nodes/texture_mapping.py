@@ -1,14 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Texture mapping: what a texture node does to its coordinates itself, in the panel Texture Mapping of the editor."""
 
-from typing import TYPE_CHECKING
-
 import bpy
 
-from .....scene import Link
-
-if TYPE_CHECKING:
-    from .graphs import GraphExporter
+from .....scene import Link, NodeGraph
 
 _AXES = ("X", "Y", "Z")
 
@@ -22,14 +17,15 @@ def is_mapped(node: bpy.types.Node) -> bool:
     return any(values) or _axes_of(mapping) != _AXES or mapping.vector_type == "NORMAL"
 
 
-def mapped(exporter: "GraphExporter", node: bpy.types.Node, vector: object) -> object:
+def mapped(graph: NodeGraph, name: str, node: bpy.types.Node, vector: object) -> object:
     """Return coordinates as a texture node's mapping turns them: axes exchanged, then as by a Mapping node.
 
-    vector: a Link or a tuple of three. Nodes other than textures, and those whose mapping does nothing, return it.
+    vector: a Link or a tuple of three, which is returned for nodes other than textures and for those whose mapping does
+    nothing; name: of the node, for messages.
     """
     if not is_mapped(node):
         return vector
-    mapping, name, add = node.texture_mapping, exporter.name_of(node), exporter.graph.add
+    mapping, add = node.texture_mapping, graph.add
     axes = _axes_of(mapping)
     if axes != _AXES:
         separated = add("separate_xyz", "x", name=name, vector=vector).node
