@@ -160,6 +160,16 @@ class RppmSceneProperties(bpy.types.PropertyGroup):
             ),
             default=False,
         ),
+        "use_layer_samples": EnumProperty(
+            name="Layer Samples",
+            description="How the samples that a view layer has of its own count beside those of the scene",
+            items=[
+                ("USE", "Use", "A view layer's samples stand in place of the scene's"),
+                ("BOUNDED", "Bounded", "A view layer's samples stand in place of the scene's where they are fewer"),
+                ("IGNORE", "Ignore", "The scene's samples count for all view layers"),
+            ],
+            default="USE",
+        ),
         "cubemap_center_object": PointerProperty(
             name="Cubemap Center",
             description=(
@@ -210,12 +220,19 @@ class RppmMaterialProperties(bpy.types.PropertyGroup):
 
 
 class RppmViewLayerProperties(bpy.types.PropertyGroup):
-    """Switches of the passes for which Blender's view layers have none."""
+    """Switches of denoising and of the passes for which Blender's view layers have none."""
 
     __annotations__ = {
         entry.own_switch: BoolProperty(name=entry.label, description=entry.description, update=_passes_edited)
         for entry in PASSES
         if entry.own_switch
+    } | {
+        "use_denoising": BoolProperty(
+            name="Denoising",
+            description="Denoise final renders of this view layer where the scene's are denoised",
+            default=True,
+            update=_passes_edited,
+        )
     }
 
 

@@ -5,6 +5,7 @@ import bpy
 
 from ...scene.passes import COMBINED, NOISY_IMAGE, aov_passes, light_group_passes
 from ..export.view_layer.passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
+from ..export.view_layer.settings import is_denoised
 from . import open_viewports
 from .baking import bake
 from .final import render_final
@@ -28,7 +29,7 @@ class RppmRenderEngine(bpy.types.RenderEngine):
     def update_render_passes(self, scene: bpy.types.Scene, renderlayer: bpy.types.ViewLayer) -> None:
         """Tell Blender of the passes that a render will have."""
         self.register_pass(scene, renderlayer, COMBINED, 4, "RGBA", "COLOR")
-        noisy = (NOISY_IMAGE,) if scene.rppm.use_denoising else ()
+        noisy = (NOISY_IMAGE,) if scene.rppm.use_denoising and is_denoised(renderlayer) else ()
         aovs = aov_passes(aovs_of_layer(renderlayer))
         groups = light_group_passes(light_groups_of_layer(renderlayer))
         for entry in (*noisy, *passes_of_layer(renderlayer), *aovs, *groups):

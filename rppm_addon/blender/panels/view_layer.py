@@ -57,10 +57,14 @@ class RPPM_PT_filter(RppmPanel, bpy.types.Panel):
         include.prop(layer, "use_solid", text="Surfaces")
         include.prop(layer, "use_strand", text="Curves")
         include.prop(layer, "use_volumes", text="Volumes")
+        use = self.layout.column(heading="Use")
         if hasattr(layer, "use_motion_blur"):  # Blender 5
-            use = self.layout.column(heading="Use")
-            use.active = context.scene.render.use_motion_blur
-            use.prop(layer, "use_motion_blur", text="Motion Blur")
+            row = use.row()
+            row.active = context.scene.render.use_motion_blur
+            row.prop(layer, "use_motion_blur", text="Motion Blur")
+        row = use.row()
+        row.active = context.scene.rppm.use_denoising
+        row.prop(layer.rppm, "use_denoising", text="Denoising")
 
 
 class RPPM_PT_override(RppmPanel, bpy.types.Panel):

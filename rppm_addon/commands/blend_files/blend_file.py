@@ -22,6 +22,7 @@ from ..picture_set import PictureSet
 from .data_paths import set_data_path
 from .fluid_domains import gas_left_out, note_fluid_domains
 from .freestyle import add_strokes
+from .post_processing import leave_post_processing_out
 
 ENGINE = "RPPM"
 
@@ -214,8 +215,6 @@ def _prepare(bpy: ModuleType, request: BlendRequest) -> None:
         scene.render.resolution_x, scene.render.resolution_y = request.resolution
         scene.render.resolution_percentage = 100
     scene.render.engine = ENGINE
-    scene.render.use_compositing = False  # a compositor may write files of its own and hide the render
-    scene.render.use_sequencer = False
     scene.render.use_single_layer = False
     _choose_layers(scene, request.view_layers)
     for path, value in request.values:
@@ -270,6 +269,7 @@ def _render(bpy: ModuleType, request: BlendRequest, observer: PictureSet | _Scen
             f'{request.path}: scene "{scene.name}" has no camera; add one in Blender and make it the active camera, '
             "or name one: --set 'camera=objects[\"Camera\"]'"
         )
+    leave_post_processing_out(scene, warn=isinstance(observer, PictureSet))
     start = time.perf_counter()
     with observing(observer):
         try:
@@ -338,6 +338,7 @@ def save_view(request: BlendRequest, combined: np.ndarray, path: Path) -> None:
                 self.end_result(result)
 
         _leave_one_picture(scene)
+        leave_post_processing_out(scene, warn=False)
         _remove_contents(scene)  # nothing of it is looked at: nothing is to be evaluated
         bpy.utils.register_class(Shown)
         try:

@@ -49,6 +49,15 @@ def test_a_final_render_has_both_pictures(lit, tmp_path):
     assert np.any(combined != noisy) and combined.mean() == pytest.approx(noisy.mean(), rel=0.02)
 
 
+def test_a_layer_that_is_not_denoised_has_one_picture(lit, tmp_path):
+    scene = noisy_scene(lit)
+    denoised = render_exr(scene, tmp_path)
+    scene.view_layers[0].rppm.use_denoising = False
+    plain = render_exr(scene, tmp_path)
+    assert set(denoised) - set(plain) == {"ViewLayer.Noisy Image"}
+    np.testing.assert_array_equal(plain["ViewLayer.Combined"], denoised["ViewLayer.Noisy Image"])
+
+
 def test_without_a_library_it_renders_and_warns(lit, tmp_path, without_libraries, monkeypatch):
     said = []
     monkeypatch.setattr("rppm_addon.blender.engine.final.report_warnings", lambda engine, texts: said.extend(texts))

@@ -9,14 +9,12 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_light, add_mesh, add_object, depsgraph, export
-from rna_without_bearing import WITHOUT_BEARING
 from support.media.vdb_files import write_vdb
 
-import rppm_addon.blender
+import rppm_addon
 from rppm_addon.blender.export import export_scene, omissions
 from rppm_addon.blender.export.updates.sync import SceneSync
-from rppm_addon.scene.passes import PASSES
-from tests.parity.features.report import not_rendered
+from tests.parity.features.report import NAMED, not_rendered
 
 
 def warnings_about(scene, title):
@@ -58,13 +56,6 @@ def catch_shadows(scene):
     the(scene, "MESH").is_shadow_catcher = True
 
 
-def fly(scene, path):
-    scene.render.use_motion_blur = True
-    volume = bpy.data.volumes.new("Cloud")
-    volume.filepath = str(write_vdb(path / "cloud.vdb", np.eye(4), velocity=np.ones((4, 4, 4, 3), np.float32)))
-    add_object(scene, "Cloud", volume)
-
-
 def step(scene):
     if not hasattr(scene.cycles, "volume_biased"):
         pytest.skip("this Blender has one way alone")
@@ -72,8 +63,55 @@ def step(scene):
     scene.update_tag()
 
 
+def diced_by(name, value):
+    def use(scene):
+        subdivide(scene)
+        setattr(scene.cycles, name, scene.camera if value is None else value)
+
+    return use
+
+
+def of_cycles(name, value=True):
+    def use(scene):
+        setattr(scene.cycles, name, value)
+        scene.update_tag()  # as an edit in the window does
+
+    return use
+
+
+def fix_threads(scene):
+    scene.render.threads_mode = "FIXED"
+
+
+def add_cloud(scene):
+    random = np.random.default_rng(1)
+    grids = {"density": random.random((3, 3, 3)), "velocity": random.random((3, 3, 3, 3))}
+    volume = bpy.data.volumes.new("Cloud")
+    volume.filepath = str(write_vdb(Path(bpy.app.tempdir) / "blown.vdb", np.eye(4), **grids))
+    add_object(scene, "Cloud", volume)
+    return volume
+
+
+def blow(scene):
+    add_cloud(scene)
+    scene.render.use_motion_blur = True
+
+
+def clip(scene):
+    add_cloud(scene).render.clipping = 0.1
+
+
 USES = {
     "Adaptive Subdivision": subdivide,
+    "Clipping": clip,
+    "Dicing Camera": diced_by("dicing_camera", None),
+    "Fast GI Approximation": of_cycles("use_fast_gi"),
+    "Max Subdivisions": diced_by("max_subdivisions", 3),
+    "Offscreen Scale": diced_by("offscreen_dicing_scale", 1.0),
+    "Sample Subset": of_cycles("use_sample_subset"),
+    "Sampling Pattern": of_cycles("sampling_pattern", "BLUE_NOISE"),
+    "Threads": fix_threads,
+    "Velocity Grid": blow,
     "Rolling Shutter": roll,
     "Shadow Catcher": catch_shadows,
     "Biased volumes": step,
@@ -125,6 +163,30 @@ def test_passes_that_are_on_for_cycles_only(lit):
     assert not warnings_about(lit, "Passes that are on for Cycles only")
 
 
+@pytest.mark.parametrize("name", ["dicing_camera", "max_subdivisions", "offscreen_dicing_scale"])
+def test_settings_of_dicing_are_named_where_something_is_diced(lit, name):
+    of_cycles(name, lit.camera if name == "dicing_camera" else 7)(lit)
+    titles = ("Dicing Camera", "Max Subdivisions", "Offscreen Scale")
+    assert not [text for text in export(lit).warnings if text.startswith(titles)]
+
+
+def test_settings_of_view_layers_that_differ_from_those_of_cycles(lit):
+    """They are named where they count, and no more once they are copied."""
+    layer = lit.view_layers[0]
+    layer.cycles.use_denoising, lit.cycles.use_layer_samples = False, "BOUNDED"
+    assert not export(lit).warnings
+    lit.rppm.use_denoising, layer.samples = True, 5
+    denoising, samples = export(lit).warnings
+    assert (
+        denoising.startswith("Denoising of the view layer is off for Cycles only") and "Copy from Cycles" in denoising
+    )
+    assert samples.startswith("Layer Samples is Bounded for Cycles and Use for RPPM")
+    lit.cycles.use_denoising = True
+    lit.update_tag()
+    bpy.ops.rppm.copy_from_cycles()
+    assert not export(lit).warnings and not export(lit).settings.use_denoising
+
+
 def test_a_viewport_follows_edits(lit):
     sync, camera = SceneSync(), export(lit).camera
     title = "Adaptive Subdivision"
@@ -140,43 +202,15 @@ def test_a_viewport_follows_edits(lit):
     assert not told()
 
 
-def described_types():
-    """By the names of WITHOUT_BEARING, the RNA of what users set."""
-    found = {name: getattr(bpy.types, name).bl_rna for name in WITHOUT_BEARING if "." not in name}
-    data, scene = bpy.data, bpy.context.scene
-    owners = {
-        "scene": scene, "view_layer": scene.view_layers[0], "world": data.worlds.new("World"),
-        "light": data.lights.new("Light", "AREA"), "object": data.objects.new("Object", None),
-        "material": data.materials.new("Material"),
-    }  # fmt: skip
-    for name in WITHOUT_BEARING:
-        if "." in name:
-            owner, member = name.split(".")
-            found[name] = getattr(owners[owner], member).bl_rna
-    return found
-
-
-def test_each_property_is_read_or_named_or_without_bearing(scene):
-    """A property that comes with a new Blender fails here until someone decides what it is."""
-    folder = Path(rppm_addon.blender.__file__).parent
-    code = "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder.rglob("*.py")))
-    read = set(re.findall(r"\w+", code)) | {entry.switch for entry in PASSES}
-    of_all = {prop.identifier for prop in bpy.types.ID.bl_rna.properties}
-    unknown = []
-    for name, rna in described_types().items():
-        properties = {prop.identifier for prop in rna.properties} - of_all - {"rna_type", "name", "rppm"}
-        unknown += [f"{name}.{prop}" for prop in sorted(properties - read - set(WITHOUT_BEARING[name].split()))]
-    assert not unknown
-
-
-def test_tables_read_what_there_is(scene):
-    """Paths of the tables that no longer lead anywhere are found out."""
-    names = {prop.identifier for rna in described_types().values() for prop in rna.properties}
-    for omission in ALL:
-        assert any(path.rsplit(".", 1)[-1] in names for path in omission.reads), omission.title
-
-
 def test_the_page_lists_them():
     page = (Path(__file__).parents[3] / "docs" / "compatibility.md").read_text(encoding="utf-8")
     assert not_rendered() in page
     assert all(f"| {omission.title} | {omission.consequence} |" in page for omission in ALL)
+
+
+def test_a_warning_names_each_row_of_the_page():
+    """The texts are in the code; the tests of each feature show that it gives them."""
+    folder = Path(rppm_addon.__file__).parent
+    code = "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder.rglob("*.py")))
+    joined = re.sub(r'"\n\s*f?"', "", code)  # texts of several lines
+    assert not [fragment for _, _, fragment in NAMED if fragment not in joined]

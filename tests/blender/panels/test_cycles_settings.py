@@ -62,6 +62,17 @@ def test_passes_of_all_view_layers(scene):
     assert [getattr(other.cycles, name) for name in OF_CYCLES] == [False, True, True, True, True]
 
 
+def test_denoising_and_samples_of_view_layers(scene):
+    other = scene.view_layers.new("Other")
+    other.cycles.use_denoising, scene.cycles.use_layer_samples = False, "BOUNDED"
+    bpy.ops.rppm.copy_from_cycles()
+    assert [layer.rppm.use_denoising for layer in scene.view_layers] == [True, False]
+    assert scene.rppm.use_layer_samples == "BOUNDED"
+    other.rppm.use_denoising, scene.rppm.use_layer_samples = True, "IGNORE"
+    bpy.ops.rppm.copy_to_cycles()
+    assert other.cycles.use_denoising and scene.cycles.use_layer_samples == "IGNORE"
+
+
 def test_settings_of_light_paths(scene):
     cycles, own = scene.cycles, scene.rppm
     cycles.sample_clamp_direct, cycles.sample_clamp_indirect = 2.0, 10.0
@@ -72,3 +83,11 @@ def test_settings_of_light_paths(scene):
     own.caustics_reflective, own.sample_clamp_direct = True, 0.0
     bpy.ops.rppm.copy_to_cycles()
     assert cycles.caustics_reflective and cycles.sample_clamp_direct == 0.0
+
+
+def test_copying_says_what_it_has_taken_and_left(scene, capfd):
+    bpy.ops.rppm.copy_from_cycles()
+    assert "settings of Cycles taken" in (plain := capfd.readouterr().out) and "not rendered" not in plain
+    scene.cycles.use_fast_gi = scene.cycles.use_sample_subset = True
+    bpy.ops.rppm.copy_from_cycles()
+    assert "taken; not rendered as in Cycles: Fast GI Approximation, Sample Subset" in capfd.readouterr().out

@@ -54,8 +54,49 @@ with the objects that use it. Nodes are named likewise; the remarks further down
 | used by a file | in RPPM's picture |
 |---|---|
 """
-VOLUMES = (
-    ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it"),
+UNNAMED_INTRODUCTION = """
+## Without a warning
+
+What no warning names: differences that nobody can tell from the file, and settings that change no picture. Tests hold
+that each property of a scene is rendered, named above, or listed with its reason (`tests/blender/audit`).
+
+| used by a file | in RPPM's picture |
+|---|---|
+"""
+NAMED = (
+    ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it",
+     "varies from place to place; it is rendered around the scene only"),
+    ("Motion Blur of the gas of fluid domains", "gas is sharp", "its gas is sharp, though Motion Blur is on"),
+    ("Inputs of a phase function that vary within a volume", "one value stands for all of it",
+     "has a phase function that varies from place to place"),
+    ("Light Linking of what has a volume that scatters",
+     "lights shine on the volume as on objects without Light Linking", "Light Linking of volumes"),
+    ("Light Linking of more than 63 sets of objects", "those beyond count as not linked",
+     "sets of objects are linked, and those beyond"),
+    ("Volume Interpolation Cubic, of materials", "voxels are interpolated linearly", "the volume interpolation Cubic"),
+    ("Light Path: glass that lets shadow rays pass", "it makes shadows and caustics all the same",
+     "its glass lets shadow rays pass (Is Shadow Ray)"),
+    ("Light Path: light that passes by Ray Length", "photons measure from where they come from",
+     "it lets light pass by Ray Length"),
+    ("Subsurface method Christensen-Burley", "a random walk stands in", "has the subsurface method Christensen-Burley"),
+    ("Sky Texture in a material", "its sun is left out", "has a sun, which is rendered in worlds alone"),
+    ("Nodes of lights that vary by place and by direction", "one of the two counts",
+     "its nodes vary by place and by direction"),
+    ("Ray Portal, Shader to RGB, Script and nodes of newer versions of Blender",
+     "a diffuse surface of the node's color, or the value of the socket that it feeds, stands in",
+     "is not rendered yet"),
+    ("A choice of a node that RPPM does not have", "the first choice stands in", "which is not rendered"),
+    ("Images that are missing or cannot be read", "magenta, as in Cycles", "magenta stands in"),
+    ("Linked libraries that are missing", "what is linked is left out", "put it back, or link to another file"),
+    ("Meshes whose vertices or faces change while the shutter is open", "their shape is not blurred",
+     "its shape is not blurred"),
+    ("View layers whose denoising or Layer Samples differ between the engines", "RPPM's count",
+     "is off for Cycles only"),
+    ("The compositor and the sequencer, in the program rppm", "not run; pictures are those of the view layers",
+     "the compositor of scene"),
+)  # fmt: skip
+"""Uses that exports name as they come upon them, what becomes of them, and a part of the warning."""
+UNNAMED = (
     (
         "A volume of the world that emits and scatters light",
         "its light comes from within 12 mean free paths of the scene, at most from 8 times its diagonal, with more "
@@ -65,26 +106,40 @@ VOLUMES = (
         "Light groups of objects that share a material whose volume emits light",
         "what camera rays and final gathers find of it counts for the group of one of them",
     ),
-    ("Motion Blur of the gas of fluid domains", "gas is sharp"),
-    ("Inputs of a phase function that vary within a volume", "one value stands for all of it"),
-    (
-        "Light Linking of what has a volume that scatters",
-        "lights shine on the volume as on objects without Light Linking",
-    ),
+    ("Light of a volume that more than one diffuse surface scatters", "left out"),
     (
         "Volume Scatter, in the Ray Visibility of what neither emits light nor is the world",
         "volumes see it as other surfaces do",
     ),
+    (
+        "Sampling of Cycles: path guiding, light tree, light threshold, scrambling distance, minimum bounces, multiple "
+        "importance sampling of lights, emission sampling, map resolution",
+        "light is found in another way; pictures converge to the same",
+    ),
+    (
+        "Shadow Caustics of objects, lights and the world",
+        "photons find the caustics of all objects, as Reflective and Refractive say",
+    ),
+    ("Steps of volumes: Step Rate, Max Steps", "all of a volume is rendered, without bias"),
+    ("Device, BVH, tiles and threads of Cycles; Persistent Data of other engines", "pictures do not depend on them"),
+    (
+        "Settings of EEVEE and Workbench: Blend Method, Backface Culling, factors of lights, Custom Distance, shadows "
+        "of lights, light probes",
+        "without effect, as in Cycles",
+    ),
+    ("Physics, particles, modifiers, geometry nodes, simulations", "Blender evaluates them for all engines"),
+    ("Color management, Dithering, File Format, Metadata burned into pictures", "Blender applies them to the result"),
 )
-"""Uses of volumes that exports name as they come upon them, and what becomes of them."""
+"""Uses that no warning names, and why: differences that the file does not show, and what changes no picture."""
 
 
 def not_rendered() -> str:
-    """The section of the page that comes of VOLUMES and of the tables by which exports are searched."""
+    """The sections of the page that come of NAMED, UNNAMED and the tables by which exports are searched."""
     listed = [(entry.title, entry.consequence) for entry in (*omissions.OF_OBJECTS, *omissions.OF_SCENES)]
-    rows = [f"| {title} | {consequence} |\n" for title, consequence in (*listed, *VOLUMES)]
+    rows = [f"| {title} | {consequence} |\n" for title, consequence, *_ in (*listed, *NAMED)]
     passes = ", ".join(omissions.PASSES.values())
-    return f"{NOT_RENDERED}{''.join(rows)}| Passes: {passes} | not offered; links from them stay black |\n"
+    named = f"{NOT_RENDERED}{''.join(rows)}| Passes: {passes} | not offered; links from them stay black |\n"
+    return named + UNNAMED_INTRODUCTION + "".join(f"| {title} | {consequence} |\n" for title, consequence in UNNAMED)
 
 
 SOURCES = (

@@ -42,12 +42,25 @@ def export_settings(
             settings.iterations, settings.photons = stored.preview_samples, stored.preview_photons
             apart = {name: getattr(stored, viewport_property(name)) for name in VIEWPORT_APART}
             settings = settings.with_values(**apart)
-    if not viewport and layer is not None and layer.samples > 0:
-        settings.iterations = layer.samples
+    if not viewport and layer is not None:
+        settings.iterations = _samples_of_layer(layer, settings.iterations, getattr(stored, "use_layer_samples", "USE"))
+        settings.use_denoising &= is_denoised(layer)
     if viewport:
         settings.time_limit = 0.0
         settings.use_denoising &= shown_pass == COMBINED
     return settings
+
+
+def _samples_of_layer(layer: bpy.types.ViewLayer, of_scene: int, use: str) -> int:
+    """Samples of a view layer beside those of its scene; use: scene.rppm.use_layer_samples."""
+    if use == "IGNORE" or layer.samples == 0:
+        return of_scene
+    return min(layer.samples, of_scene) if use == "BOUNDED" else layer.samples
+
+
+def is_denoised(layer: bpy.types.ViewLayer) -> bool:
+    """Return whether final renders of a view layer are denoised where those of its scene are."""
+    return getattr(getattr(layer, "rppm", None), "use_denoising", True)
 
 
 def seed_of_frame(seed: int, frame: int) -> int:

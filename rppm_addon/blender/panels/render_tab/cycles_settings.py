@@ -4,7 +4,9 @@
 from collections.abc import Iterable
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
+from ...export.omissions import OF_SCENES
 from ...export.view_layer.passes import OF_CYCLES
 from .. import cycles_properties
 
@@ -50,10 +52,13 @@ SHARED = {
         for what in ("use_{}adaptive_sampling", "{}adaptive_threshold", "{}adaptive_min_samples")
         for name in (what.format(""), what.format("preview_"))
     },
+    "use_layer_samples": "use_layer_samples",
     "film_exposure": "film_exposure",
     "pixel_filter_type": "pixel_filter_type",
 }
 """RPPM's properties and Cycles' that stand for the same; transparent film is one property for both."""
+SHARED_OF_LAYERS = {"use_denoising": "use_denoising", **OF_CYCLES}
+"""Cycles' switches of view layers, with the add-on's that stand for the same."""
 _LIMITS_OF_PARTS = ("max_camera_bounces", "max_photon_bounces")
 _LEAST_AUTOMATIC_THRESHOLD = 0.001
 
@@ -67,6 +72,14 @@ def _copy(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, names: Ite
     """Set the target's properties, named second, to the source's, named first, as far as its ranges allow."""
     for name, other in names:
         setattr(target, other, _clamped(target, other, getattr(source, name)))
+
+
+def _taken_and_left(scene: bpy.types.Scene) -> str:
+    """Return a sentence on how many settings Copy from Cycles has taken, and on the features that it has left."""
+    number = len(SHARED) + len(SHARED_OF_LAYERS) * len(scene.view_layers)
+    left = [iface_(omission.title) for omission in OF_SCENES if omission.is_used(scene)]
+    taken = iface_("{} settings of Cycles taken").format(number)
+    return f"{taken}; {iface_('not rendered as in Cycles: {}').format(', '.join(left))}" if left else taken
 
 
 class _CopySettings(bpy.types.Operator):
@@ -89,13 +102,14 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
         own, cycles = context.scene.rppm, context.scene.cycles
         _copy(cycles, own, ((other, name) for name, other in SHARED.items()))
         for layer in context.scene.view_layers:
-            _copy(layer.cycles, layer.rppm, OF_CYCLES.items())
+            _copy(layer.cycles, layer.rppm, SHARED_OF_LAYERS.items())
         for name in _LIMITS_OF_PARTS:
             own.property_unset(name)
         for prefix in ("", "preview_"):
             if getattr(cycles, f"{prefix}adaptive_threshold") == 0.0:  # automatic, by the samples
                 automatic = max(_LEAST_AUTOMATIC_THRESHOLD, 1.0 / max(getattr(cycles, f"{prefix}samples"), 1))
                 setattr(own, f"{prefix}adaptive_threshold", automatic)
+        self.report({"INFO"}, _taken_and_left(context.scene))
         return {"FINISHED"}
 
 
@@ -109,7 +123,7 @@ class RPPM_OT_copy_to_cycles(_CopySettings):
         """Copy."""
         _copy(context.scene.rppm, context.scene.cycles, SHARED.items())
         for layer in context.scene.view_layers:
-            _copy(layer.rppm, layer.cycles, ((own, other) for other, own in OF_CYCLES.items()))
+            _copy(layer.rppm, layer.cycles, ((own, other) for other, own in SHARED_OF_LAYERS.items()))
         return {"FINISHED"}
 
 

@@ -120,6 +120,9 @@ class RPPM_PT_advanced(RppmPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings, "seed")
         row.prop(settings, "use_animated_seed", text="", icon="TIME")
+        row = column.row()
+        row.active = any(layer.samples > 0 for layer in context.scene.view_layers)
+        row.prop(settings, "use_layer_samples")
         if RPPM_OT_copy_from_cycles.poll(context):
             row = column.row(align=True)
             row.operator(RPPM_OT_copy_from_cycles.bl_idname)

@@ -175,3 +175,12 @@ def test_an_even_cloud(renderer, lit, tmp_path, space, thickness):
     assert scene.warnings == []
     seen = renderer.render(scene).frame.combined[12:20, 12:20, :3]
     np.testing.assert_allclose(seen / before, np.exp(-2.0 * thickness), rtol=2e-2)
+
+
+def test_a_view_layer_may_have_no_volumes(scene, tmp_path):
+    """As in Cycles, fog in meshes stays."""
+    volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values()))
+    add_mesh(scene, material=smoke_material())
+    assert len(export(scene).instances) == 2
+    scene.view_layers[0].use_volumes = False
+    assert len(export(scene).instances) == 1

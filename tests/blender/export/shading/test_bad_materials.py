@@ -306,3 +306,12 @@ def test_attributes_of_the_view_layer_that_is_rendered(scene, material, tree):
     exported = export_scene(other.depsgraph)
     strength = [node.inputs["strength"] for node in exported.materials[0].graph.nodes if node.kind == "emission"]
     assert strength == [0.75]
+
+
+def test_an_output_of_another_kind_is_none(scene, material, tree):
+    """Scripts may give a material the output of a world."""
+    tree.nodes.clear()
+    tree.nodes.new("ShaderNodeOutputWorld")
+    add_mesh(scene, material=material)
+    (warning,) = export(scene).warnings
+    assert "no Material Output node" in warning

@@ -7,7 +7,7 @@ from blender_scenes import add_light, add_mesh, collect, depsgraph, export, set_
 from emission import world_map
 from node_trees import new_material
 
-from rppm_addon.blender.export import SceneSync
+from rppm_addon.blender.export import SceneSync, export_settings
 from rppm_addon.blender.export.camera.camera import export_camera
 from rppm_addon.scene import RayVisibility
 
@@ -79,6 +79,26 @@ def test_samples_of_a_layer(scene):
     assert export(scene).settings.iterations == 7
     layer.samples = 0
     assert export(scene).settings.iterations == 50
+
+
+@pytest.mark.parametrize(("use", "few", "many"), [("USE", 7, 70), ("BOUNDED", 7, 50), ("IGNORE", 50, 50)])
+def test_use_of_the_samples_of_layers(scene, use, few, many):
+    """As Cycles counts them; the viewport has samples of its own."""
+    scene.rppm.samples, scene.rppm.preview_samples, scene.rppm.use_layer_samples = 50, 9, use
+    layer = scene.view_layers[0]
+    for samples, expected in ((0, 50), (7, few), (70, many)):
+        layer.samples = samples
+        assert export_settings(scene, layer).iterations == expected
+        assert export_settings(scene, layer, viewport=True).iterations == 9
+
+
+def test_layers_are_denoised_one_by_one(scene):
+    scene.rppm.use_denoising = scene.rppm.use_preview_denoising = True
+    layer = scene.view_layers[0]
+    layer.rppm.use_denoising = False
+    assert export_settings(scene, scene.view_layers.new("Other")).use_denoising
+    assert not export_settings(scene, layer).use_denoising and not export(scene).settings.denoising_features
+    assert export_settings(scene, layer, viewport=True).use_denoising, "viewports are denoised all the same"
 
 
 def test_a_scene_that_lives_on_follows_its_layer(masked, followed):

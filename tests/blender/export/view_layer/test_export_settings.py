@@ -18,7 +18,7 @@ ELSEWHERE = {"film_transparent", "passes", "aovs", "light_groups", "denoising_st
 # point, and what viewports have apart
 BESIDES = {
     "bake_type", "use_animated_seed", "film_exposure", "checkpoint_path", "cubemap_center_object", "preview_samples",
-    "preview_photons", "preview_pause", *(viewport_property(name) for name in VIEWPORT_APART),
+    "preview_photons", "preview_pause", "use_layer_samples", *(viewport_property(name) for name in VIEWPORT_APART),
 }  # fmt: skip
 
 

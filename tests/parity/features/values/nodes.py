@@ -62,6 +62,25 @@ for _type in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
     _inputs = _TURNED | ({"Location": (0.1, 0.2, 0.3)} if _type in {"POINT", "TEXTURE"} else {})
     value("Mapping", _type, socket("Mapping", inputs=_inputs, vector_type=_type), 0.1, 0.5)
 
+
+def _mapped_texture(kind, **mapping):
+    """A texture whose node maps its coordinates itself."""
+
+    def give(net):
+        node = net.node(kind, {"Vector": OBJECT, "Scale": 2.0, "Detail": 1.0})
+        for name, chosen in mapping.items():
+            setattr(node.texture_mapping, name, chosen)
+        return node.outputs["Color"]
+
+    return give
+
+
+_PLACED = {"translation": (0.3, -0.2, 0.1), "rotation": (0.4, 0.2, -0.7), "scale": (0.5, 0.8, 1.5)}
+for _type in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
+    value("Texture Mapping", _type, _mapped_texture("TexNoise", vector_type=_type, **_PLACED))
+_EXCHANGED = {"mapping_x": "Z", "mapping_y": "X", "mapping_z": "NONE"}
+value("Texture Mapping", "axes exchanged", _mapped_texture("TexNoise", **_EXCHANGED, **_PLACED))
+
 for _operation in ("MULTIPLY", "POWER", "SINE", "LESS_THAN", "SMOOTH_MIN", "PINGPONG"):
     value("Math", _operation, _of_noise("Math", 0, 0, {1: 0.45, 2: 0.3}, operation=_operation), 0.8, 0.1)
 value("Math", "clamped", _of_noise("Math", 0, 0, {1: 0.6}, operation="ADD", use_clamp=True))

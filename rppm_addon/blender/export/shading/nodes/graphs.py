@@ -15,6 +15,7 @@ from ...context import ExportContext
 from ...geometry.meshes.attributes import GENERATED
 from .inlining import ReadableTree
 from .links import LinkTable, Path, Source, Unlinked, find_source
+from .texture_mapping import mapped
 
 Handler = Callable[["GraphExporter", bpy.types.Node, bpy.types.NodeSocket, Path], object]
 """Gives the value of an output: a Link, a number or a color."""
@@ -263,9 +264,11 @@ class GraphExporter:
             if not given and isinstance(default, str):
                 continue  # the surface's own
             if not given and socket_type is VECTOR and socket.hide_value and _is_placed(node):
-                inputs[name] = self.implicit_coordinates(node)
+                inputs[name] = self._mapped(node, self.implicit_coordinates(node))
                 continue
             inputs[name] = self.value(socket, path)
+            if name == "vector":
+                inputs[name] = self._mapped(node, inputs[name])
         return inputs
 
     def _options(self, kind: NodeKind, node: bpy.types.Node) -> dict[str, object]:
@@ -284,9 +287,13 @@ class GraphExporter:
         return options
 
     def coordinates_of(self, node: bpy.types.Node, path: Path) -> object:
-        """Return the value of the Vector input of a texture node."""
+        """Return where a texture node looks itself up: the value of its Vector input, through its texture mapping."""
         socket = self.given_coordinates(node, path)
-        return self.implicit_coordinates(node) if socket is None else self.value(socket, path)
+        vector = self.implicit_coordinates(node) if socket is None else self.value(socket, path)
+        return self._mapped(node, vector)
+
+    def _mapped(self, node: bpy.types.Node, vector: object) -> object:
+        return mapped(self.graph, self.name_of(node), node, vector)
 
     def given_coordinates(self, node: bpy.types.Node, path: Path) -> bpy.types.NodeSocket | None:
         """The Vector input of a texture node, where something else than the implicit coordinates is given to it."""

@@ -30,7 +30,7 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
         return Material(material.name, plain_surface(tuple(material.diffuse_color[:3])), pass_index=material.pass_index)
     owner = f'Material "{material.name}"'
     output = tree.output
-    if output is None:
+    if output is None or output.type != "OUTPUT_MATERIAL":  # such as that of a world, which scripts may add
         context.report.warn(f"{owner}: it has no Material Output node and is black")
         return Material(material.name, pass_index=material.pass_index)
     exporter = GraphExporter(owner, context, tree, material.pass_index)
@@ -47,6 +47,8 @@ def export_material(material: bpy.types.Material, context: ExportContext) -> Mat
         exported.abbe_number = material.rppm.abbe_number
     if exporter.is_linked(output.inputs["Volume"], ()):
         exported.interior = export_volume(owner, context, tree, material.pass_index)
+        if getattr(getattr(material, "cycles", None), "volume_interpolation", "LINEAR") == "CUBIC":
+            context.report.warn(f"{owner}: it has the volume interpolation Cubic; voxels are interpolated linearly")
         if not exporter.is_linked(output.inputs["Surface"], ()):
             graph.surface = graph.add("volume_boundary", "bsdf")
     return exported

@@ -39,6 +39,7 @@ from ...images.color_spaces import working_space
 from ...images.images import is_associated
 from .graphs import GraphExporter, handles, snake_case
 from .links import Path
+from .texture_mapping import is_mapped
 
 
 def _subsurface_method(node: bpy.types.Node, name: str) -> dict[str, str]:
@@ -308,7 +309,9 @@ def _sky_texture(exporter: GraphExporter, node: bpy.types.Node, output: bpy.type
     space = working_space()
     image = exporter.images.computed((name, sky), lambda: _sky_image(name, sky, space))
     vector = exporter.coordinates_of(node, path)
-    is_direction = exporter.is_world and exporter.given_coordinates(node, path) is None
+    is_direction = exporter.is_world and exporter.given_coordinates(node, path) is None and not is_mapped(node)
+    if not exporter.is_world and sky.scatters and sky.sun_disc and sky.sun_intensity > 0.0:
+        exporter.warn(node, "has a sun, which is rendered in worlds alone; it is left out")
     options = {} if is_direction else {"projection": "SKY"}
     link = exporter.graph.add("tex_environment", "color", name=name, options=options, image=image, vector=vector)
     exporter.skies[link.node] = sky
