@@ -83,3 +83,11 @@ def test_settings_of_light_paths(scene):
     own.caustics_reflective, own.sample_clamp_direct = True, 0.0
     bpy.ops.rppm.copy_to_cycles()
     assert cycles.caustics_reflective and cycles.sample_clamp_direct == 0.0
+
+
+def test_copying_says_what_it_has_taken_and_left(scene, capfd):
+    bpy.ops.rppm.copy_from_cycles()
+    assert "settings of Cycles taken" in (plain := capfd.readouterr().out) and "not rendered" not in plain
+    scene.cycles.use_fast_gi = scene.cycles.use_sample_subset = True
+    bpy.ops.rppm.copy_from_cycles()
+    assert "taken; not rendered as in Cycles: Fast GI Approximation, Sample Subset" in capfd.readouterr().out

@@ -4,7 +4,9 @@
 from collections.abc import Iterable
 
 import bpy
+from bpy.app.translations import pgettext_iface as iface_
 
+from ...export.omissions import OF_SCENES
 from ...export.view_layer.passes import OF_CYCLES
 from .. import cycles_properties
 
@@ -63,6 +65,14 @@ def _copy(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, names: Ite
         setattr(target, other, _clamped(target, other, getattr(source, name)))
 
 
+def _taken_and_left(scene: bpy.types.Scene) -> str:
+    """Return a sentence on how many settings Copy from Cycles has taken, and on the features that it has left."""
+    number = len(SHARED) + len(SHARED_OF_LAYERS) * len(scene.view_layers)
+    left = [iface_(omission.title) for omission in OF_SCENES if omission.is_used(scene)]
+    taken = iface_("{} settings of Cycles taken").format(number)
+    return f"{taken}; {iface_('not rendered as in Cycles: {}').format(', '.join(left))}" if left else taken
+
+
 class _CopySettings(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
@@ -90,6 +100,7 @@ class RPPM_OT_copy_from_cycles(_CopySettings):
             if getattr(cycles, f"{prefix}adaptive_threshold") == 0.0:  # automatic, by the samples
                 automatic = max(_LEAST_AUTOMATIC_THRESHOLD, 1.0 / max(getattr(cycles, f"{prefix}samples"), 1))
                 setattr(own, f"{prefix}adaptive_threshold", automatic)
+        self.report({"INFO"}, _taken_and_left(context.scene))
         return {"FINISHED"}
 
 
