@@ -25,8 +25,8 @@ OF_STAGES = {name: set(words.split()) for name, words in RENDERED.items()}
 LISTED = {key for words in WITHOUT_EFFECT.values() for key in words.split()}
 EVALUATED_TYPES = {"ParticleSettings"}
 """Types of which Blender evaluates nearly all; what engines read is listed as rendered."""
-CHOICES_OF_OWN = 3
-"""Values and owners of a property that are tried, at most, where nothing is expected to happen."""
+CHOICES_OF_OWN = 1
+"""Number of changes of a property that are tried where nothing is expected to happen."""
 
 pytestmark = pytest.mark.skipif(bpy.app.version[:2] != (5, 0), reason="the lists are those of Blender 5.0")
 
