@@ -153,7 +153,8 @@ def test_material_and_world_panels_edit_the_output_that_is_exported(scene):
     assert [socket.identifier for socket in shown] == ["Surface", "Volume", "Displacement"]
     assert all(socket.node == ours for socket in shown)
     assert records["RPPM_PT_material_settings"].properties == [
-        "pass_index", "displacement_method", "use_transparent_shadow", "use_dispersion", "abbe_number",
+        "pass_index", "displacement_method", "use_transparent_shadow", "use_bump_map_correction",
+        "use_dispersion", "abbe_number",
     ]  # fmt: skip
     assert records["RPPM_PT_material_displacement"].labels == []
     tree.nodes.clear()
