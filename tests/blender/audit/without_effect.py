@@ -15,7 +15,6 @@ APPROXIMATED = "they have Cycles approximate what RPPM renders as it is"
 OF_NAMED = "they count only with a feature that a warning names"
 WINDOWS_OF_SCENES = "they are of playback, sound and simulation, or of an animation as a whole"
 UNREAD = "Cycles itself does not read them, or there is nothing that they could act on"
-ELSEWHERE = "pictures are as with Cycles' setting at its default"
 
 WITHOUT_EFFECT = {
     EVALUATED: """
@@ -98,9 +97,6 @@ WITHOUT_EFFECT = {
     """,
     UNREAD: """
         CyclesVisibilitySettings.shadow CyclesWorldSettings.volume_interpolation
-    """,
-    ELSEWHERE: """
-        CyclesMaterialSettings.use_bump_map_correction CyclesRenderSettings.blur_glossy ViewLayer.pass_alpha_threshold
     """,
     OUTPUT: """
         Scene.compositing_node_group Scene.use_nodes Scene.use_stamp_note
