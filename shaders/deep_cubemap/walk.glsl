@@ -32,8 +32,8 @@ struct CubemapWalk {
 // A list that a walk has come to, and how far it has been read.
 struct CellItems {
     CubemapCell cell;
-    vec2 depth;   // of the ray's origin, and its slope
-    float exit;   // the distance at which the ray leaves the cell
+    vec2 depth;  // of the ray's origin, and its slope
+    float exit;  // the distance at which the ray leaves the cell
     uvec2 wanted;
     uint place, end;
     int bin, bins_left;

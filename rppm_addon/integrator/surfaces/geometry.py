@@ -214,17 +214,11 @@ class Geometry(BufferSet):
         entries["first_triangle"] = ends - lengths
         slot_materials: list[int] = []
         if instances:
-            for field, member in _STARTS.items():
-                entries[field] = part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
-            entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
-            placed = self.matrices
+            _locate(entries, meshes, which)
+            far_boxes = None
             if scene.world_origin is not None:
-                pivots = _pivots(placed, np.array([bounds[place] for place in which.tolist()]))
-                entries["pivot"] = pivots
-                placed = placed.copy()
-                placed[:, :3, 3] += np.einsum("nij,nj->ni", placed[:, :3, :3], pivots)
-            for row in range(3):
-                entries[f"row{row}"] = placed[:, row]
+                far_boxes = np.array([bounds[place] for place in which.tolist()])
+            _place(entries, self.matrices, far_boxes)
             is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in meshes])[which]
             of_instances = (
                 [instance.materials for instance in instances] if slots is None else [slots[index] for index in chosen]
@@ -366,6 +360,25 @@ def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> st
     for instance, length in zip(instances, lengths, strict=True):
         sums[instance.object_name] += length
     return ", ".join(f'{count:,} of "{name}"' for name, count in sums.most_common(_OBJECTS_NAMED) if count)
+
+
+def _locate(entries: np.ndarray, meshes: list[Mesh], which: np.ndarray) -> None:
+    """Fill in where the arrays of the mesh of each entry begin; which: (n,), the places of these among the meshes."""
+    for field, member in _STARTS.items():
+        entries[field] = part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
+    entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+
+
+def _place(entries: np.ndarray, matrices: np.ndarray, far_boxes: np.ndarray | None) -> None:
+    """Fill in rows and pivots of entries. far_boxes: (n, 2, 3), those of the meshes where the scene is far from the
+    world's origin."""
+    if far_boxes is not None:
+        pivots = _pivots(matrices, far_boxes)
+        entries["pivot"] = pivots
+        matrices = matrices.copy()
+        matrices[:, :3, 3] += np.einsum("nij,nj->ni", matrices[:, :3, :3], pivots)
+    for row in range(3):
+        entries[f"row{row}"] = matrices[:, row]
 
 
 def _fill(

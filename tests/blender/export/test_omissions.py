@@ -121,12 +121,9 @@ ALL = (*omissions.OF_OBJECTS, *omissions.OF_SCENES)
 
 
 @pytest.mark.parametrize("omission", ALL, ids=lambda omission: omission.title)
-def test_what_is_used_is_named_once(lit, omission, tmp_path):
+def test_what_is_used_is_named_once(lit, omission):
     assert not warnings_about(lit, omission.title)
-    if omission.title.startswith("Motion Blur of volumes"):
-        fly(lit, tmp_path)
-    else:
-        USES[omission.title](lit)
+    USES[omission.title](lit)
     (text,) = warnings_about(lit, omission.title)
     assert omission.consequence in text
 
