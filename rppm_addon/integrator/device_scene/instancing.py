@@ -9,7 +9,7 @@ from ...scene.materials import Material
 from ...scene.meshes import Instance
 from ...scene.passes import DEEP_CUBEMAP, VECTOR
 from ...scene.scene import Scene
-from ...scene.settings import FirstCameraHits, Instancing
+from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
 from ...scene.storage.sharing import same_members
 
 MANY_TRIANGLES = 1 << 18
@@ -84,12 +84,21 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     settings = scene.settings
     is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
+    kind = settings.acceleration_structure
+    has_cubemap = kind is AccelerationStructure.DEEP_CUBEMAP or (
+        kind is AccelerationStructure.AUTOMATIC and not is_software
+    )
     return (
-        settings.first_camera_hits in first_hits
+        not (has_cubemap and _has_media(scene))  # programs of both would need more storage blocks than devices have
+        and settings.first_camera_hits in first_hits
         and scene.camera.texels is None
         and not {VECTOR, DEEP_CUBEMAP.name} & set(settings.passes)
         and not any(traces_rays(material.graph) for material in scene.materials)
     )
+
+
+def _has_media(scene: Scene) -> bool:
+    return scene.world.volume is not None or any(material.interior is not None for material in scene.materials)
 
 
 def _must_be_expanded(material: Material) -> bool:

@@ -12,7 +12,9 @@ RENDERED = {
         CyclesLightSettings.is_portal CyclesLightSettings.max_bounces CyclesRenderLayerSettings.pass_render_time
         CyclesRenderLayerSettings.use_pass_volume_majorant CyclesRenderLayerSettings.use_pass_volume_scatter
         CyclesRenderLayerSettings.use_pass_volume_transmit CyclesRenderSettings.use_fast_gi
-        CyclesRenderSettings.use_sample_subset CyclesRenderSettings.sampling_pattern CyclesVisibilitySettings.camera
+        CyclesRenderSettings.use_sample_subset CyclesRenderSettings.volume_biased ViewLayer.pass_alpha_threshold
+        CyclesMaterialSettings.use_bump_map_correction
+        CyclesRenderSettings.sampling_pattern CyclesVisibilitySettings.camera
         CyclesVisibilitySettings.diffuse CyclesVisibilitySettings.glossy CyclesVisibilitySettings.scatter
         CyclesVisibilitySettings.transmission CyclesWorldSettings.max_bounces Light.color Light.exposure
         Light.normalize Light.type Light.use_nodes Light.use_shadow Light.use_temperature Material.pass_index

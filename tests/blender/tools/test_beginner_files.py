@@ -25,7 +25,7 @@ def test_there_are_hundreds_by_names_of_their_own():
 )
 def test_files_have_all_that_a_render_needs(registered, name):
     FILES[name]()
-    scene = export_scene(bpy.context.evaluated_depsgraph_get())
+    scene = export_scene(bpy.context.evaluated_depsgraph_get()).expanded()
     assert scene.warnings == []
     assert scene.camera.resolution == SIZE
     assert len(scene.instances) > 1

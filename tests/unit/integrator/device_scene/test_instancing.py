@@ -35,8 +35,9 @@ def scene_of(*members: tuple[int, int], **settings: object) -> Scene:
     materials = [
         material("plain", Lobe(LobeKind.DIFFUSE)),
         material("glowing", Lobe(LobeKind.EMISSION)),
-        material("filled", Lobe(LobeKind.GLASS), absorption=np.ones(3)),
     ]
+    if FILLED in {kind for _, kind in members}:
+        materials.append(material("filled", Lobe(LobeKind.GLASS), absorption=np.ones(3)))
     instances = [Instance(mesh, placed(k, 0, 0), [kind]) for k, (mesh, kind) in enumerate(members)]
     camera = Camera(np.eye(4), (-1, 1, -1, 1), 8, 8)
     return Scene(camera, meshes, instances, materials, settings=RenderSettings(**settings))
@@ -139,3 +140,10 @@ def test_instances_that_move_while_the_shutter_is_open():
     scene = scene_of(*BALLS)
     movement = Movement(2, KEYS, np.stack([placed(0, 0, 0), placed(0, 0, 1)]))
     assert moved_in(dataclasses.replace(scene, shutter=Shutter(np.ones(4), instances=[movement]))) == [2]
+
+
+def test_volumes_and_a_deep_cubemap_leave_no_blocks_for_two_levels():
+    members = (0, PLAIN), (0, PLAIN), (1, FILLED)
+    assert members_of(scene_of(*members, **TWO_LEVELS)) == [0, 1]
+    cubemap = scene_of(*members, **TWO_LEVELS, acceleration_structure=AccelerationStructure.DEEP_CUBEMAP)
+    assert members_of(cubemap) == []
