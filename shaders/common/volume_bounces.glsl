@@ -3,7 +3,7 @@
 // direct light only. Light that specular surfaces alone have sent there counts as direct. The includer includes
 // common/iteration.glsl and common/photon.glsl before.
 
-// Whether a photon may count at an importon; own_vertices: of the importon, 1 in a medium and 0 on a surface.
+// Whether a photon may count at an importon; own_vertices: of the camera path in media, with the importon.
 bool within_volume_bounces(uint bounce_counts, uint photon_flags, uint own_vertices) {
     if (iteration.volume_bounces >= MOST_MEDIUM_VERTICES) return true;
     uint before = medium_count(bounce_counts), count = before + own_vertices;

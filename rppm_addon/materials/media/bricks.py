@@ -81,6 +81,17 @@ class Lattice:
         ordered = ordered.reshape(x * BRICK_SIDE, y * BRICK_SIDE, z * BRICK_SIDE, -1)
         return ordered[: self.voxels[0], : self.voxels[1], : self.voxels[2]]
 
+    def interpolated(self, values: np.ndarray, voxels: tuple[int, int, int]) -> np.ndarray:
+        """Values (bricks, BRICK_VOXELS, channels) at another number of voxels in the same box, linear between those of
+        this lattice: (x, y, z, channels)."""
+        found = self.in_order(values).astype(np.float64)
+        for axis, count in enumerate(voxels):
+            places = np.linspace(0.0, found.shape[axis] - 1.0, count)
+            first = np.minimum(places.astype(int), found.shape[axis] - 2)
+            weight = np.expand_dims(places - first, [other for other in range(4) if other != axis])
+            found = np.take(found, first, axis) * (1.0 - weight) + np.take(found, first + 1, axis) * weight
+        return found
+
 
 @dataclass(frozen=True)
 class BrickGrid:

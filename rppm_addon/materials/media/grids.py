@@ -22,6 +22,9 @@ MAX_VOXELS = 1 << 24
 """Voxels of all grids that differ, with those of empty bricks."""
 MAX_GRID_BYTES = 1 << 30
 """Bytes of all grids on the device, at most."""
+_MOST_ERROR = 0.03
+"""Root mean square of what linear interpolation in a lattice misses of the coefficients on one half as wide, over that
+of the coefficients, up to which the coarser lattice is taken: rays cross half as many voxels."""
 _FEWEST_VOXELS = 8
 """Voxels of a grid, at least."""
 
@@ -59,16 +62,18 @@ class PlacedMedium:
             return None
         return np.linalg.inv(np.asarray(self.matrix, np.float64))
 
-    def lattice(self, most: int) -> Lattice | None:
-        """The lattice of at most so many voxels; None for a medium without a place."""
+    def lattices(self, most: int) -> list[Lattice]:
+        """Lattices of at most so many voxels, the coarsest first; none for a medium without a place."""
         if self.box is None or self.to_object is None:
-            return None
+            return []
         low, high = self.box
-        along = VOXELS_ALONG if self.interior.variation > Variation.OBJECT else 2
-        spacing: float | np.ndarray = float(np.max(high - low)) / (along - 1)
+        extent = float(np.max(high - low))
+        if self.interior.variation <= Variation.OBJECT:
+            return [Lattice.of(low, high, extent, most)]
+        spacing = extent / (VOXELS_ALONG - 1)
         if self.spacing is not None:  # whose voxels stay where they are, and may be divided
-            spacing = self.spacing / max(1.0, np.floor(np.min(self.spacing / spacing)))
-        return Lattice.of(low, high, spacing, most)
+            return [Lattice.of(low, high, self.spacing / max(1.0, np.floor(np.min(self.spacing / spacing))), most)]
+        return [Lattice.of(low, high, factor * spacing, most) for factor in (2.0, 1.0)]
 
 
 EvaluateVoxels = Callable[[NodeGraph, Lattice, PlacedMedium], np.ndarray]
@@ -144,10 +149,10 @@ class MediumGrids(BufferSet):
         before, self._baked = self._baked if most == self._most else {}, {}
         self._most = most
         for placed in media:
-            lattice = placed.lattice(most)
-            if placed.key not in self._baked and lattice is not None:
+            lattices = placed.lattices(most)
+            if placed.key not in self._baked and lattices:
                 known = before.get(placed.key)
-                self._baked[placed.key] = known or _baked(placed, lattice, evaluate, evaluate_once)
+                self._baked[placed.key] = known or _baked(placed, lattices, evaluate, evaluate_once)
 
     def _upload(self, media: list[PlacedMedium]) -> list[tuple[np.void, np.ndarray]]:
         firsts, parts, end = {}, [np.zeros(1, np.uint32)], 1
@@ -166,18 +171,58 @@ class MediumGrids(BufferSet):
         return found
 
 
-def _baked(placed: PlacedMedium, lattice: Lattice, evaluate: EvaluateVoxels, evaluate_once: Evaluate) -> BakedMedium:
-    def coefficient(graph: NodeGraph | None) -> np.ndarray | None:
-        return None if graph is None else usable(evaluate(graph, lattice, placed))
+@dataclass(frozen=True)
+class _Coefficients:
+    """Coefficients of a medium on a lattice, each (bricks, BRICK_VOXELS, 3) float32 or None for none."""
 
-    interior = placed.interior
+    lattice: Lattice
+    absorption: np.ndarray | None
+    scattering: list[np.ndarray]
+    """Coefficients of its phase functions."""
+    emission: np.ndarray | None
+
+    @classmethod
+    def of(cls, placed: PlacedMedium, lattice: Lattice, evaluate: EvaluateVoxels) -> "_Coefficients":
+        def coefficient(graph: NodeGraph | None) -> np.ndarray | None:
+            return None if graph is None else usable(evaluate(graph, lattice, placed))
+
+        interior = placed.interior
+        scattering = [usable(evaluate(part.coefficient, lattice, placed)) for part in interior.scattering]
+        return cls(lattice, coefficient(interior.absorption), scattering, coefficient(interior.emission))
+
+    def agrees_with(self, finer: "_Coefficients") -> bool:
+        """Whether linear interpolation gives the coefficients of a finer lattice nearly."""
+        for mine, others in zip(self._parts, finer._parts, strict=True):
+            expected = finer.lattice.in_order(others).astype(np.float64)
+            error = self.lattice.interpolated(mine, finer.lattice.voxels) - expected
+            if np.square(error).mean() > _MOST_ERROR**2 * np.square(expected).mean():
+                return False
+        return True
+
+    @property
+    def _parts(self) -> list[np.ndarray]:
+        return [part for part in (self.absorption, *self.scattering, self.emission) if part is not None]
+
+
+def _resolved(placed: PlacedMedium, lattices: list[Lattice], evaluate: EvaluateVoxels) -> _Coefficients:
+    """Return the coefficients on the coarsest lattice that has their detail."""
+    coarse = _Coefficients.of(placed, lattices[0], evaluate)
+    for lattice in lattices[1:]:
+        finer = _Coefficients.of(placed, lattice, evaluate)
+        if coarse.agrees_with(finer):
+            break
+        coarse = finer
+    return coarse
+
+
+def _baked(
+    placed: PlacedMedium, lattices: list[Lattice], evaluate: EvaluateVoxels, evaluate_once: Evaluate
+) -> BakedMedium:
+    interior, found = placed.interior, _resolved(placed, lattices, evaluate)
     functions = PHASE_FUNCTION.zeros(len(interior.scattering))
-    scattering: np.ndarray | None = None
-    for function, part in zip(functions, interior.scattering, strict=True):
-        values = coefficient(part.coefficient)
-        assert values is not None
+    for function, part, values in zip(functions, interior.scattering, found.scattering, strict=True):
         function["scattering"] = values.mean(axis=(0, 1), dtype=np.float64)
         function["kind"], function["parameters"] = part.kind, part.parameters(evaluate_once)
-        scattering = values if scattering is None else scattering + values
-    coefficients = coefficient(interior.absorption), scattering, coefficient(interior.emission)
-    return BakedMedium(placed.source, lattice, brick_grid(coefficients), functions)
+    scattering = sum(found.scattering[1:], found.scattering[0]) if found.scattering else None
+    grid = brick_grid((found.absorption, scattering, found.emission))
+    return BakedMedium(placed.source, found.lattice, grid, functions)

@@ -25,5 +25,5 @@ void main() {
     CameraRay ray = camera.projection <= PROJECTION_ORTHOGRAPHIC ? plane_ray(at, lens) : panorama_ray(at, lens);
     rays[index] = camera_is_sheared() ? sheared_ray(ray) : world_ray(ray);
     camera_paths[index] = CameraPath(vec3(1.0), 0.0, ray.start_distance, 0.0, sqrt(ray.area / PI),
-                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u);
+                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, 1.0);
 }

@@ -18,5 +18,8 @@ void main() {
     uint index = invocation_index();
     if (index >= min(parameters.count, photon_end) || (photons[index].bounce_counts & PHOTON_IN_MEDIUM) == 0u) return;
     if (iteration.next_event != 0u && (photons[index].flags & PHOTON_DIRECT) != 0u) return;
+    bool is_straight =
+        medium_count(photons[index].bounce_counts) == 0u && (photons[index].flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
+    if (is_straight) atomicAdd(straight_photon_count, 1u);
     medium_photons[atomicAdd(medium_photon_count, 1u)] = index;
 }

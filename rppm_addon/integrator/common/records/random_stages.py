@@ -27,6 +27,7 @@ class RandomStage(enum.IntEnum):
     MEDIA = 15
     IN_SCATTERING = 16
     MEDIUM_PHOTONS = 17
+    CAMERA_SCATTERING = 18
 
 
 Constants("RandomStages", STAGE=RandomStage)
