@@ -45,7 +45,7 @@ _EXPECTED_PHOTONS = 8
 _WIDEST = 0.1
 """Largest radius over Media.reach."""
 _FEWEST_BUCKETS = 1 << 10
-_WIDEST_KERNEL = 1.5
+_WIDEST_KERNEL = 2.5
 """Largest radius in dense media over that by the number of photons."""
 _FREE_PATHS = 0.7
 """Radius of the first iteration in dense media, mean free paths."""
