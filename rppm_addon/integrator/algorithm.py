@@ -43,6 +43,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             yield
             listeners.direct_light_added(events, segment)
             importons.scatter(context, band, segment)
+            stages.medium_scattering.leave_vertices(context, importons)
             listeners.paths_scattered(events, segment)
             stages.coverage.probe(context, importons, band, segment)
             raster = stages.camera_hits.raster(band) if segment == 0 and not stages.subsurface.is_on else None
@@ -63,12 +64,14 @@ def _add_scattering_in_media(context: StageContext, stages: StageSet, events: Ba
     """Add the light that media scatter toward the camera along the rays of a segment: direct light by shadow rays, and
     all other light by photon beams, where rays come straight from the camera through thin media, or by photons."""
     importons, band, sums, beams = events.importons, events.band, events.sums, stages.photon_beams
+    photon_map = stages.medium_photons
+    stages.medium_scattering.scatter_camera_paths(context, importons, beams, photon_map, band, segment)
     if stages.direct_light.add_in_media(context, importons, band, events.iteration, segment):
         stages.listeners.medium_light_added(events, segment)
     raster = stages.camera_hits.raster(band)
     beams.splat(context, stages.photons, importons, sums, raster, segment)
     beams_from = beams.least_free_path if beams.draws(raster, segment) else None
-    stages.medium_photons.gather(context, importons, sums, band, segment, beams_from)
+    photon_map.gather(context, importons, sums, band, segment, beams_from)
 
 
 def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration) -> Iterator[None]:

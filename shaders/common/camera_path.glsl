@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <CameraPath>
 #include <CameraPathFlags>
+#include <CameraPathsInMedia>
 
 // The least pdf of a path that no lobe has scattered.
 const float NO_PDF = 1e30;

@@ -117,6 +117,15 @@ bool may_scatter(uint counts, uint photon_number, uint scatter, bool transmitted
 // What global photons count for: the disk's area over that of the surface in it (camera_paths/coverage/probe.comp).
 float photon_factor(uint gathers) { return float(max(gathers >> PHOTON_FACTOR_SHIFT, 1u)); }
 
+// Vertices of an importon's path in media.
+uint vertices_in_media(uint gathers) {
+#ifdef MEDIA
+    return (gathers >> IMPORTON_MEDIUM_SHIFT) & MOST_MEDIUM_VERTICES;
+#else
+    return 0u;
+#endif
+}
+
 // Light that a photon adds to an importon, what of it is diffuse, and whether it came from the viewer's side.
 struct Estimate {
     vec3 radiance;
@@ -144,7 +153,7 @@ bool density_estimate(IMPORTON, uint counts, uint photon_number, out Estimate es
     // Photons count on the side they arrived at; only transmission links the two sides.
     uint kind = unpack_kind(ITS.lobe_kind);
     if (alignment < 0.0 && !lobe_transmits(kind) && largest(ITS.translucent) <= 0.0) return false;
-    if (exceeds_depth(arrived_depth(ITS.history), photon_number, 0u)) return false;
+    if (exceeds_depth(arrived_depth(ITS.history), photon_number, vertices_in_media(ITS.gathers))) return false;
     vec3 direction = photons[photon_number].direction;
     float side = alignment > 0.0 ? 1.0 : -1.0, away = photons[photon_number].distance;
     if (is_shut_off(side * height, dot(offset, photon_normal), side * dot(direction, geometric) * away, away, radius)

@@ -22,10 +22,16 @@ uint lobe_scatter(uint kind, bool transmitted) {
     return transmitted ? SCATTER_TRANSMISSION : SCATTER_GLOSSY;
 }
 
+// Whether a medium was the first to scatter a path: it has no Scatter of a surface.
+bool is_scattered_by_medium(uint history) {
+    return first_scatter(history) == SCATTER_NONE && (history & HISTORY_AGAIN) != 0u;
+}
+
 uint scattered_history(uint history, uint scatter) {
     if (scatter == SCATTER_NONE) return history;
     uint first = first_scatter(history);
     bool diffuse = scatter == SCATTER_DIFFUSE, caustic = (history & HISTORY_DIFFUSE) != 0u && !diffuse;
-    return (first == SCATTER_NONE ? scatter : first | HISTORY_AGAIN) | (history & (HISTORY_AGAIN | HISTORY_CAUSTIC))
+    bool is_first = first == SCATTER_NONE && (history & HISTORY_AGAIN) == 0u;
+    return (is_first ? scatter : first | HISTORY_AGAIN) | (history & (HISTORY_AGAIN | HISTORY_CAUSTIC))
            | (diffuse ? HISTORY_DIFFUSE : 0u) | (caustic ? HISTORY_CAUSTIC : 0u);
 }

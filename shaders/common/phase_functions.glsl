@@ -186,6 +186,11 @@ vec3 scattered_phase(uint flags, PlaceOnRay at, float cosine) {
     return sum;
 }
 
+// The mean phase function of all channels, 1/sr; scattering: coefficient of the media, 1/m.
+float mean_phase(uint flags, PlaceOnRay at, float cosine, vec3 scattering) {
+    return dot(scattered_phase(flags, at, cosine), vec3(1.0)) / max(dot(scattering, vec3(1.0)), 1e-30);
+}
+
 // A phase function of the media that a path is in, chosen by what it scatters of each color's weight, and the random
 // number, which is as good as new.
 PhaseFunction sample_path_phase_function(uint flags, PlaceOnRay at, vec3 weight, inout float u) {

@@ -4,21 +4,10 @@
 #include <PhotonFlags>
 #include <PhotonHistory>
 #include <PhotonNumbers>
-#include <MediumScattering>
+#include "common/medium_vertices.glsl"
 #include <PhotonsInMedia>
 
 uint photon_path_of(uint word) { return word & ((1u << PHOTON_SEGMENT_SHIFT) - 1u); }
-
-// The number of the vertices of a photon path in media.
-const uint MOST_MEDIUM_VERTICES = 31u;
-
-uint medium_count(uint bounce_counts) { return (bounce_counts >> MEDIUM_COUNT_SHIFT) & MOST_MEDIUM_VERTICES; }
-
-// The counts behind one more vertex in a medium.
-uint medium_counted(uint bounce_counts) {
-    bool full = medium_count(bounce_counts) == MOST_MEDIUM_VERTICES;
-    return full ? bounce_counts : bounce_counts + (1u << MEDIUM_COUNT_SHIFT);
-}
 
 #include "common/disk_radius.glsl"
 #include <PhotonFootprints>

@@ -7,8 +7,8 @@
 #endif
 
 // Whether light has been scattered more often than any or its own is to, from what it lights first to the camera, or
-// has passed more transparent surfaces. camera_depth: of the camera path; medium_vertices: of this vertex of the path,
-// 1 in a medium and 0 on a surface.
+// has passed more transparent surfaces. camera_depth: of the camera path; medium_vertices: of the camera path in
+// media, with this one.
 bool exceeds_depth(uint camera_depth, uint photon_number, uint medium_vertices) {
 #ifdef MEDIA
     if (!within_volume_bounces(photons[photon_number].bounce_counts, photons[photon_number].flags,

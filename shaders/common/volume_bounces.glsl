@@ -12,7 +12,7 @@ bool is_light_direct(uint photon_flags, uint depth) {
     return (photon_flags & PHOTON_AFTER_ROUGH_BOUNCE) == 0u;
 }
 
-// Whether a photon may count at an importon; own_vertices: of the importon, 1 in a medium and 0 on a surface.
+// Whether a photon may count at an importon; own_vertices: of the camera path in media, with the importon.
 bool within_volume_bounces(uint bounce_counts, uint photon_flags, uint depth, uint own_vertices) {
     if (iteration.volume_bounces >= MOST_MEDIUM_VERTICES) return true;
     uint before = medium_count(bounce_counts), count = before + own_vertices;

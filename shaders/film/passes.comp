@@ -152,9 +152,9 @@ void add_denoising_data_of_media(CameraPath path, float far, SeenThroughMedia se
     PlaceOnRay at = PlaceOnRay(rays[index].origin, rays[index].direction, 0.0);
 #ifdef HETEROGENEOUS_MEDIA
     uvec4 random = pcg4d(uvec4(floatBitsToUint(at.direction), iteration.number));
-    at.distance =
-        sample_scattered_flight(path.flags, rays[index], far, vec2(unit_float(random.x), unit_float(random.y)))
-            .distance;
+    vec3 thickness = segment_thickness(path.flags, at.origin, at.direction, far);
+    vec2 u = vec2(unit_float(random.x), unit_float(random.y));
+    at.distance = sample_scattered_flight(path.flags, rays[index], far, thickness, u);
 #endif
     MediumCoefficients medium = path_medium(path.flags, at);
     vec3 albedo = medium.scattering / max(medium.absorption + medium.scattering, vec3(1e-30));

@@ -120,21 +120,31 @@ vec3 segment_thickness(uint flags, vec3 origin, vec3 direction, float distance) 
 
 // The distance along a segment at which a path collides with its media, INFINITY_DISTANCE where it does not: where
 // the optical thickness of a channel comes to that of a random number u in [0, 1). Of several media, each has a free
-// flight of its own, of which the shortest is distributed as that of all together.
-float segment_free_flight(uint flags, vec3 origin, vec3 direction, float distance, int channel, float u) {
-    float extinction = even_extinction(flags)[channel], thickness = -log(max(1.0 - u, 1e-30));
-    float flight = extinction > 0.0 ? thickness / extinction : INFINITY_DISTANCE;
-    if (flight > distance) flight = INFINITY_DISTANCE;
+// flight of its own, of which the shortest is distributed as that of all together. passed: the thickness of all
+// media up
+// to there, or along the whole segment.
+float segment_free_flight(uint flags, vec3 origin, vec3 direction, float distance, int channel, float u,
+                          out vec3 passed) {
+    vec3 even = even_extinction(flags);
+    float thickness = -log(max(1.0 - u, 1e-30)), flight = even[channel] > 0.0 ? thickness / even[channel] : distance;
+    bool collides = flight < distance;
+    flight = min(flight, distance);
     vec3 offset = lookup_offset(origin, direction);
     bool world = true;
     uint medium, number = 0u;
+    passed = vec3(0.0);
     for (uint set = flags >> FIRST_MEDIUM; next_grid(set, world, medium); ++number) {
-        if (extinction > 0.0 || number > 0u)
+        if (even[channel] > 0.0 || number > 0u)
             thickness = -log(1.0 - unit_float(pcg4d(uvec4(floatBitsToUint(u), number, iteration.number, medium)).x));
-        flight =
-            min(flight, grid_free_flight(medium, origin, direction, min(flight, distance), offset, channel, thickness));
+        float next = grid_free_flight(medium, origin, direction, flight, offset, channel, thickness, passed);
+        if (next < flight) {
+            flight = next;
+            collides = true;
+        }
     }
-    return flight;
+    if (number > 1u) passed = grids_thickness(flags, origin, direction, flight, offset, MEDIA_UNKNOWN);
+    passed += even * flight;
+    return collides ? flight : INFINITY_DISTANCE;
 }
 
 // Radiance that the media along a segment emit, at its beginning. Where a path is in several grids, each sees the

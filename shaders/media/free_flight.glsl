@@ -4,9 +4,9 @@
 #include <Ray>
 // A point where light is scattered, sampled by the extinction of one channel, which is chosen evenly.
 struct FreeFlight {
-    float distance;  // meters
-    float pdf;       // of the distance, 1/m; 0 where the ray passes the media
-    float passing;   // probability of passing
+    float distance;      // meters
+    float pdf;           // of the distance, 1/m; 0 where the ray passes the media
+    vec3 transmittance;  // up to there, or up to the end of the ray, whose mean is the probability of passing
 };
 
 // The densities of the three channels' distances, averaged (one-sample MIS with the balance heuristic).
@@ -22,8 +22,8 @@ FreeFlight sample_free_flight(uint flags, Ray ray, float far, vec2 u) {
     FreeFlight flight;
     vec3 extinction = even_extinction(flags);
     float rate = extinction[min(int(3.0 * u.x), 2)];
-    flight.passing = dot(exp(-extinction * far), vec3(1.0 / 3.0));
     flight.distance = rate > 0.0 ? -log(max(1.0 - u.y, 1e-30)) / rate : INFINITY_DISTANCE;
+    flight.transmittance = exp(-extinction * min(flight.distance, far));
     flight.pdf = flight.distance < far ? flight_pdf(extinction, flight.distance) : 0.0;
     return flight;
 }
@@ -31,21 +31,21 @@ FreeFlight sample_free_flight(uint flags, Ray ray, float far, vec2 u) {
 // The longest segment along which light is scattered evenly, meters: nothing is seen that far away.
 const float MOST_EVEN = 1e10;
 
-// Pdf of sample_scattered_flight, 1/m. Thin media are sampled evenly.
-float scattered_flight_pdf(uint flags, Ray ray, float far, float distance) {
-    vec3 extinction = even_extinction(flags);
-    vec3 scattered = 1.0 - exp(-extinction * far);
-    vec3 densities = mix(extinction * exp(-extinction * distance) / max(scattered, vec3(1e-30)),
-                         vec3(1.0 / min(far, MOST_EVEN)), lessThanEqual(extinction * far, vec3(1e-3)));
+// Pdf of sample_scattered_flight, 1/m. Thin media are sampled evenly. thickness: of the media along the ray;
+// transmittance: up to the distance.
+float scattered_flight_pdf(uint flags, Ray ray, float far, float distance, vec3 thickness, out vec3 transmittance) {
+    vec3 extinction = even_extinction(flags), scattered = 1.0 - exp(-thickness);
+    transmittance = exp(-extinction * distance);
+    vec3 densities = mix(extinction * transmittance / max(scattered, vec3(1e-30)), vec3(1.0 / min(far, MOST_EVEN)),
+                         lessThanEqual(thickness, vec3(1e-3)));
     return dot(densities, vec3(1.0 / 3.0));
 }
 
 // A distance at which light is scattered before the end of the ray, which may be at INFINITY_DISTANCE.
-FreeFlight sample_scattered_flight(uint flags, Ray ray, float far, vec2 u) {
-    vec3 extinction = even_extinction(flags);
-    float rate = extinction[min(int(3.0 * u.x), 2)], optical_depth = rate * far;
-    float distance = optical_depth > 1e-3 ? -log(max(1.0 - u.y * (1.0 - exp(-optical_depth)), 1e-30)) / rate
-                                          : min(far, MOST_EVEN) * u.y;
-    return FreeFlight(distance, scattered_flight_pdf(flags, ray, far, distance), 0.0);
+float sample_scattered_flight(uint flags, Ray ray, float far, vec3 thickness, vec2 u) {
+    int channel = min(int(3.0 * u.x), 2);
+    float rate = even_extinction(flags)[channel], optical_depth = thickness[channel];
+    return optical_depth > 1e-3 ? -log(max(1.0 - u.y * (1.0 - exp(-optical_depth)), 1e-30)) / rate
+                                : min(far, MOST_EVEN) * u.y;
 }
 #endif

@@ -27,6 +27,9 @@ struct GridRay {
     uint medium;
     vec3 origin;     // where it enters the grid, voxels
     vec3 direction;  // voxels a meter
+    vec3 inverse;    // of the direction, meters a voxel
+    ivec3 voxels;    // of the grid
+    uint words;      // place of the grid's first word
     float start;     // distance along the ray to where it enters the grid, meters
     float at;        // how far it has come since, meters
     float end;       // and how far it goes, meters
@@ -38,6 +41,7 @@ struct GridSpan {
     uint brick;    // place of the brick's voxels; 0: without effect
     uint voxel;    // number of the voxel in the brick
     float extent;  // meters
+    float before;  // distance along the ray from where it enters the grid, meters
 };
 
 GridRay grid_ray(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
@@ -48,20 +52,24 @@ GridRay grid_ray(uint medium, vec3 origin, vec3 direction, float distance, vec3 
         vec3(dot(grid.to_grid0.xyz, direction), dot(grid.to_grid1.xyz, direction), dot(grid.to_grid2.xyz, direction));
     d = mix(d, vec3(1e-20), lessThan(abs(d), vec3(1e-20)));
     // The medium ends at the centers of the outermost voxels.
-    vec3 low = (vec3(0.5) - o) / d, high = (vec3(grid.voxels) - 0.5 - o) / d;
+    vec3 inverse = 1.0 / d, low = (vec3(0.5) - o) * inverse, high = (vec3(grid.voxels) - 0.5 - o) * inverse;
     vec3 near = min(low, high), far = max(low, high);
     float start = max(max(near.x, max(near.y, near.z)), 0.0);
     float end = min(min(far.x, min(far.y, far.z)), distance);
     vec3 entry = o + start * d + offset;
     ivec3 cell = clamp(ivec3(floor(entry)), ivec3(0), ivec3(grid.voxels) - 1);
-    return GridRay(medium, entry, d, start, 0.0, end - start, cell);
+    return GridRay(medium, entry, d, inverse, ivec3(grid.voxels), grid.first_word, start, 0.0, end - start, cell);
 }
 
-uint brick_place(uint medium, uvec3 brick) {
-    uvec3 bricks = (media[medium].voxels + (BRICK_SIDE - 1u)) / BRICK_SIDE;
+// The place of a brick's voxels, of a grid of so many voxels whose words begin at a place.
+uint brick_place(uint words, uvec3 voxels, uvec3 brick) {
+    uvec3 bricks = (voxels + (BRICK_SIDE - 1u)) / BRICK_SIDE;
     uint number = brick.x + bricks.x * (brick.y + bricks.y * brick.z);
-    return imageLoad(MediumVoxels, int(media[medium].first_word + number)).x;
+    return imageLoad(MediumVoxels, int(words + number)).x;
 }
+
+// The place of the brick's voxels that a ray comes to.
+uint brick_place(GridRay ray) { return brick_place(ray.words, uvec3(ray.voxels), uvec3(ray.cell) / BRICK_SIDE); }
 
 uint voxel_number(uvec3 cell) {
     uvec3 local = cell % BRICK_SIDE;
@@ -70,22 +78,21 @@ uint voxel_number(uvec3 cell) {
 
 // The next part of a ray; false at its end.
 bool next_span(inout GridRay ray, out GridSpan span) {
-    span = GridSpan(0u, 0u, 0.0);
+    span = GridSpan(0u, 0u, 0.0, ray.at);
     if (!(ray.at < ray.end)) return false;
-    uvec3 brick = uvec3(ray.cell) / BRICK_SIDE;
-    span.brick = brick_place(ray.medium, brick);
+    span.brick = brick_place(ray);
     span.voxel = voxel_number(uvec3(ray.cell));
-    vec3 low = span.brick == 0u ? vec3(BRICK_SIDE * brick) : vec3(ray.cell);
+    vec3 low = vec3(span.brick == 0u ? ray.cell & ~int(BRICK_SIDE - 1u) : ray.cell);
     vec3 high = low + (span.brick == 0u ? float(BRICK_SIDE) : 1.0);
     bvec3 forward = greaterThan(ray.direction, vec3(0.0));
-    vec3 exits = (mix(low, high, forward) - ray.origin) / ray.direction;
+    vec3 exits = (mix(low, high, forward) - ray.origin) * ray.inverse;
     float leave = min(exits.x, min(exits.y, exits.z)), next = clamp(leave, ray.at, ray.end);
     span.extent = next - ray.at;
     // Along the axis of the exit to the neighbor, whatever rounding says.
     vec3 cell = clamp(floor(ray.origin + next * ray.direction), low, high - 1.0);
     cell = mix(cell, mix(low - 1.0, high, forward), lessThanEqual(exits, vec3(leave)));
     ray.cell = ivec3(cell);
-    bool inside = all(greaterThanEqual(cell, vec3(0.0))) && all(lessThan(cell, vec3(media[ray.medium].voxels)));
+    bool inside = all(greaterThanEqual(cell, vec3(0.0))) && all(lessThan(cell, vec3(ray.voxels)));
     ray.at = inside ? next : ray.end;
     return true;
 }
@@ -125,44 +132,34 @@ MediumCoefficients grid_coefficients(uint medium, PlaceOnRay at) {
     vec3 offset = lookup_offset(at.origin, at.direction), place = at.origin + at.distance * at.direction;
     GridRay ray = grid_ray(medium, place, at.direction, 0.0, offset);
     if (ray.start > 0.0 || ray.end < 0.0) return MediumCoefficients(vec3(0.0), vec3(0.0), vec3(0.0));
-    return span_coefficients(
-        medium, GridSpan(brick_place(medium, uvec3(ray.cell) / BRICK_SIDE), voxel_number(uvec3(ray.cell)), 0.0));
+    return span_coefficients(medium, GridSpan(brick_place(ray), voxel_number(uvec3(ray.cell)), 0.0, 0.0));
 }
 
-// Optical thickness of a grid along a ray; before: that up to a part of the distance.
-vec3 grid_thickness_parts(uint medium, vec3 origin, vec3 direction, float distance, float part, vec3 offset,
-                          out vec3 before) {
+// Optical thickness of a grid along a ray.
+vec3 grid_thickness(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
     GridRay ray = grid_ray(medium, origin, direction, distance, offset);
     vec3 thickness = vec3(0.0);
-    float left = part - ray.start;
-    before = vec3(0.0);
     GridSpan span;
-    while (next_span(ray, span)) {
-        vec3 extinction = span_extinction(medium, span);
-        thickness += extinction * span.extent;
-        before += extinction * clamp(left, 0.0, span.extent);
-        left -= span.extent;
-    }
+    while (next_span(ray, span)) thickness += span_extinction(medium, span) * span.extent;
     return thickness;
 }
 
-vec3 grid_thickness(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset) {
-    vec3 before;
-    return grid_thickness_parts(medium, origin, direction, distance, 0.0, offset, before);
-}
-
 // The distance along a ray at which the optical thickness of a channel comes to a value, by exact inversion;
-// INFINITY_DISTANCE where it does not.
+// INFINITY_DISTANCE where it does not. passed: thickness up to there, or up to the end of the ray.
 float grid_free_flight(uint medium, vec3 origin, vec3 direction, float distance, vec3 offset, int channel,
-                       float thickness) {
+                       float thickness, out vec3 passed) {
     GridRay ray = grid_ray(medium, origin, direction, distance, offset);
-    float gone = ray.start;
+    passed = vec3(0.0);
     GridSpan span;
     while (next_span(ray, span)) {
-        float extinction = span_extinction(medium, span)[channel];
-        if (extinction * span.extent > thickness) return gone + thickness / extinction;
-        thickness -= extinction * span.extent;
-        gone += span.extent;
+        vec3 extinction = span_extinction(medium, span);
+        float rest = thickness - passed[channel];
+        if (extinction[channel] * span.extent > rest) {
+            float extent = max(rest, 0.0) / extinction[channel];
+            passed += extinction * extent;
+            return ray.start + span.before + extent;
+        }
+        passed += extinction * span.extent;
     }
     return INFINITY_DISTANCE;
 }

@@ -32,11 +32,13 @@ Record(
     first_candidate="uint",
     candidates="uint",
     draws_beams="uint",
+    straight_photons="uint",
     least_free_path="float",
     **SUM_PARAMETERS,
 )
-StorageBlock("MediumPhotons", "uint medium_photon_count; uint medium_photons[];")
-"""Numbers of the photons that media have scattered."""
+StorageBlock("MediumPhotons", "uint medium_photon_count; uint straight_photon_count; uint medium_photons[];")
+"""Numbers of the photons that media have scattered, and how many of them nothing but specular surfaces had scattered
+before."""
 
 _EXPECTED_PHOTONS = 8
 """Photons in the kernel of the first iteration, where they lie evenly in the media."""
@@ -48,6 +50,9 @@ _WIDEST_KERNEL = 2.5
 _FREE_PATHS = 0.7
 """Radius of the first iteration in dense media, mean free paths."""
 Constants("MediumPhotonKernel", signed=True, WIDEST=_WIDEST_KERNEL)
+_MOST_STRAIGHT = 0.1
+"""Fraction of the photons in media that nothing but specular surfaces has scattered before, up to which camera paths
+are scattered: they find no such light."""
 _CANDIDATES = 30_000
 """Photons that a thread looks at: llvmpipe ends the loops of a thread after 65535 rounds."""
 
@@ -57,7 +62,7 @@ class MediumPhotonMap(Stage):
 
     memory_group = "media"
     remedy = "lower the photons per iteration or the photon path length"
-    _numbers = StorageBuffer("photons in media", "uint", header="uint", block="MediumPhotons")
+    _numbers = StorageBuffer("photons in media", "uint", header="uvec2", block="MediumPhotons")
     _grid = StorageBuffer("grid of photons in media", "uvec2", header="uvec4", block="Buckets")
     _sorted = StorageBuffer("sorted photons in media", "uvec4", texel_bytes=16, block="SortedPhotons")
     _list = ComputeShader("media/photon_map/list.comp")
@@ -69,6 +74,8 @@ class MediumPhotonMap(Stage):
     """Photons of the iteration that the map holds."""
     radius = 0.0
     """Radius of the kernel, meters."""
+    _straight_count = 0
+    """Photons of the map that nothing but specular surfaces has scattered before."""
     _shrinkage = 1.0
     """Radii over those of the first iteration."""
 
@@ -85,10 +92,10 @@ class MediumPhotonMap(Stage):
         with context.timers.stage("photon map of media"):
             slots = max(photons.slots, 1)
             self._numbers.require_items(slots)
-            self._numbers.write(np.zeros(1, np.uint32))
+            self._numbers.write(np.zeros(2, np.uint32))
             blocks = {**context.blocks, **photons.blocks, **self.blocks}
             self._list.run(slots, blocks, {"count": slots})
-            self.photon_count = int(self._numbers.read(np.uint32, 1)[0])
+            self.photon_count, self._straight_count = map(int, self._numbers.read(np.uint32, 2))
             if not self.photon_count:
                 return
             self._shrinkage = shrinkage_in(3, iteration.number, context.settings.alpha)
@@ -131,6 +138,7 @@ class MediumPhotonMap(Stage):
                         **self._cells,
                         "first_candidate": first,
                         "candidates": _CANDIDATES,
+                        "straight_photons": self._straight_count,
                         "draws_beams": beams_from is not None,
                         "least_free_path": beams_from or 0.0,
                         **sums.parameters,
@@ -141,6 +149,11 @@ class MediumPhotonMap(Stage):
         """Return the radius of the first iteration with as many photons, meters."""
         ball = _EXPECTED_PHOTONS * volume / self.photon_count
         return min(math.cbrt(3.0 * ball / (4.0 * math.pi)), _WIDEST * reach)
+
+    @property
+    def is_lit_by_specular_surfaces(self) -> bool:
+        """Whether much of the light in media has come straight by specular surfaces, so that photons alone bring it."""
+        return self._straight_count > _MOST_STRAIGHT * self.photon_count
 
     @property
     def _buckets(self) -> int:

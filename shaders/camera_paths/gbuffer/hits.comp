@@ -44,5 +44,5 @@ void main() {
     rays[index] = ray;
     hits[index] = number == 0u ? Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE) : seen_hit(ray, number - 1u);
     camera_paths[index] = CameraPath(vec3(1.0), 0.0, camera_ray.start_distance, 0.0, sqrt(camera_ray.area / PI),
-                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, NO_PDF);
+                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, NO_PDF, 1.0);
 }

@@ -16,6 +16,7 @@ void add_radiance(PathSegment segment, vec4 radiance) {
 void handle_media(inout PathSegment segment) {
     vec3 emitted = segment.path.throughput
                    * segment_emission(segment.path.flags, segment.ray.origin, segment.ray.direction, segment.distance);
+    if (is_medium_gather(segment.path)) emitted = vec3(0.0);
     if (is_final_gather(segment.path)) final_gather_hits[segment.index].radiance += emitted;
     else radiances[segment.index].rgb += emitted;
     segment.path.throughput *=

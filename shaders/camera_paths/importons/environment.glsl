@@ -46,11 +46,32 @@ vec4 background_radiance(CameraPath path, vec3 environment, float shadow_ray_pdf
     return vec4(path.throughput * environment * scatter_mis_weight(path.scatter_pdf, shadow_ray_pdf), 0.0);
 }
 
+#ifdef MEDIA
+// The environment at the end of a ray that a medium has scattered, which shadow rays from there bring as well, but for
+// what photons bring straight to there.
+void gather_environment_in_medium(PathSegment segment, vec3 environment, float shadow_ray_pdf) {
+    CameraPath path = segment.path;
+    if ((path.flags & PATH_CAUSTIC) != 0u || !(path.scatter_pdf > 0.0)) return;
+#ifdef PORTALS
+    return;
+#endif
+    radiances[segment.index].rgb +=
+        clamped_light(path.throughput * environment * scatter_mis_weight(path.scatter_pdf, shadow_ray_pdf),
+                      bounces_of(path.depth) - 1u);
+}
+#endif
+
 // The environment at the end of a final gather's ray is direct light at its origin, which shadow rays and photons bring
 // as well, or a caustic there, which photons bring as well. Each technique has its MIS weight.
 void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampling sampling) {
     uint index = segment.index;
     CameraPath path = segment.path;
+#ifdef MEDIA
+    if (is_medium_gather(path)) {
+        gather_environment_in_medium(segment, environment, sampling.nominal_pdf);
+        return;
+    }
+#endif
     if ((path.flags & PATH_CAUSTIC) == 0u) {
         if (iteration.next_event == 0u) return;
         vec3 direct = path.throughput * environment * scatter_mis_weight(path.scatter_pdf, sampling.pdf);

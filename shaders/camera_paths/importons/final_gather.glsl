@@ -13,6 +13,12 @@ bool is_secondary_gather(CameraPath path) {
     return (path.flags & both) == both;
 }
 
+#ifdef MEDIA
+#include "media/medium_gather.glsl"
+#else
+bool is_medium_gather(CameraPath path) { return false; }
+#endif
+
 // Whether a path may begin a final gather at a closure, or a secondary one. The first begins anywhere. In corners, near
 // the origin of a ray, the disk in which photons count reaches beyond the surface, to where there are no photons: there
 // a secondary one begins. Strands and points are too small for such disks, so that it begins on all of them.

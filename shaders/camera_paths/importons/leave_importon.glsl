@@ -21,8 +21,18 @@ ClosureLobe sample_importon_lobe(SurfaceVertex vertex, vec4 weights, float u) {
     return lobe;
 }
 
+// The vertices of a path in media.
+uint vertex_bits(CameraPath path) {
+#ifdef MEDIA
+    return medium_count(path.bounce_counts) << IMPORTON_MEDIUM_SHIFT;
+#else
+    return 0u;
+#endif
+}
+
 uint gather_flags(SurfaceVertex vertex) {
-    return (vertex.can_gather ? FINAL_GATHER_ORIGIN : 0u) | (is_final_gather(vertex.path) ? FINAL_GATHER_HIT : 0u);
+    return vertex_bits(vertex.path) | (vertex.can_gather ? FINAL_GATHER_ORIGIN : 0u)
+           | (is_final_gather(vertex.path) ? FINAL_GATHER_HIT : 0u);
 }
 
 // All members but those of the lobe are written before it is selected: processors have no registers to keep the rest

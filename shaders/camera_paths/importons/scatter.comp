@@ -42,6 +42,22 @@ readonly buffer RadiusFactors;
 #include "camera_paths/importons/sample_bsdf.glsl"
 #include "camera_paths/importons/sample_next_ray.glsl"
 
+// The surface at the end of a ray: its emission, an importon, and the next ray, unless a medium scatters the path
+// before.
+void handle_surface(PathSegment segment, uint history, vec3 lights) {
+    SurfaceVertex vertex = surface_vertex(segment, history);
+    handle_emission(segment, vertex, lights);
+    LobeSelection lobes = select_lobes(vertex);
+    RaySamples samples = ray_samples(segment.index);
+    record_final_gather_hit(vertex, lobes);
+    leave_importon(vertex, lobes, samples.importon);
+#ifdef MEDIA
+    if (vertex.path.medium_passing == SCATTERED_BY_MEDIUM) return;
+    vertex.path.throughput /= max(vertex.path.medium_passing, 1e-20);
+#endif
+    sample_next_ray(vertex, lobes, samples);
+}
+
 void main() {
     uint index = active_path();
     if (index == NO_PATH) return;
@@ -51,15 +67,6 @@ void main() {
     PathSegment segment = path_segment(index, ray);
     handle_media(segment);
     vec3 lights = light_object_emission(segment);
-    if (segment.escapes) {
-        handle_escaped(segment, lights);
-        return;
-    }
-    SurfaceVertex vertex = surface_vertex(segment, history);
-    handle_emission(segment, vertex, lights);
-    LobeSelection lobes = select_lobes(vertex);
-    RaySamples samples = ray_samples(index);
-    record_final_gather_hit(vertex, lobes);
-    leave_importon(vertex, lobes, samples.importon);
-    sample_next_ray(vertex, lobes, samples);
+    if (segment.escapes) handle_escaped(segment, lights);
+    else handle_surface(segment, history, lights);
 }

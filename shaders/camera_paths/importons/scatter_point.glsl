@@ -19,7 +19,8 @@ uint pack_lit_from(uint light_set, bool from_behind, bool is_gather_origin) {
 // an MIS weight, since shadow rays find the same lights. Without them, and behind a secondary gather, it does not.
 bool path_collects_emission(CameraPath path) {
     bool is_direct = (path.flags & PATH_CAUSTIC) == 0u && !is_secondary_gather(path);
-    return !is_final_gather(path) || (is_direct && iteration.next_event != 0u && path.scatter_pdf > 0.0);
+    return !is_final_gather(path)
+           || (is_direct && !is_medium_gather(path) && iteration.next_event != 0u && path.scatter_pdf > 0.0);
 }
 
 // The vertex at which a path was scattered last. A ray that passes a surface begins anew behind it, while shadow rays

@@ -34,5 +34,5 @@ void main() {
 #endif
     rays[index] = seen;
     camera_paths[index] = CameraPath(vec3(1.0), 0.0, ray.start_distance, 0.0, sqrt(ray.area / PI),
-                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, NO_PDF);
+                                     PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, NO_PDF, 1.0);
 }

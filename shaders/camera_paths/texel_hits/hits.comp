@@ -66,7 +66,7 @@ void main() {
         rays[index] = Ray(vec3(0.0), NO_TRIANGLE, normalize(position), known ? INFINITY_DISTANCE : 0.0);
         hits[index] = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
         camera_paths[index] =
-            CameraPath(vec3(1.0), 0.0, 0.0, 0.0, 0.0, PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, NO_PDF);
+            CameraPath(vec3(1.0), 0.0, 0.0, 0.0, 0.0, PATH_CAMERA_TRANSPARENT, 0u, 0u, 0u, 0.0, 0u, 0u, NO_PDF, 1.0);
         return;
     }
     vec3 geometric = face / max(length(face), 1e-30);
@@ -83,5 +83,5 @@ void main() {
     hits[index] = Hit(texel.triangle, b.x, b.y, 0.0);
     float facing = max(abs(dot(geometric, above)), 1e-4);
     camera_paths[index] = CameraPath(vec3(1.0), 0.0, 0.0, 0.0, sqrt(area * facing / PI), PATH_CAMERA_TRANSPARENT, 0u,
-                                     0u, 0u, 0.0, 0u, 0u, NO_PDF);
+                                     0u, 0u, 0.0, 0u, 0u, NO_PDF, 1.0);
 }

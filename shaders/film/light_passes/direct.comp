@@ -31,7 +31,7 @@ void main() {
                                                            : vec3(0.0));
     } else if (parameters.scattered == 0u) return;
     else if (first_scatter(history) != SCATTER_NONE) add_scattered_light(first_scatter(history), true, index, light);
-    else if (parameters.in_media != 0u) add_volume_light(false, index, light);
+    else if (parameters.in_media != 0u) add_volume_light(is_scattered_by_medium(history), index, light);
     else {
         add_scattered_light(SCATTER_DIFFUSE, false, index, light * (1.0 - glossy - transmission));
         add_scattered_light(SCATTER_GLOSSY, false, index, light * glossy);

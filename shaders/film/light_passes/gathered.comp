@@ -17,10 +17,12 @@ readonly buffer Radiances;
 void main() {
     uint index = invocation_index();
     if (index >= parameters.count || final_gather_origins[index].reuse_radius == NO_FINAL_GATHER) return;
-    uint first = first_scatter(departing_history(importons[index].history));
+    uint history = departing_history(importons[index].history), first = first_scatter(history);
     vec3 light = radiances[index].rgb;
     if (parameters.part == GATHER_PART_CAUSTICS) add_to_pass(PASS_CAUSTICS, index, light);
-    else if (parameters.part == GATHER_PART_ALL) add_scattered_light(first, true, index, light);
+    else if (is_scattered_by_medium(history)) {
+        if (parameters.part == GATHER_PART_ALL) add_volume_light(true, index, light);
+    } else if (parameters.part == GATHER_PART_ALL) add_scattered_light(first, true, index, light);
     else {
         add_scattered_light(first, false, index, light);
         add_scattered_light(first, true, index, -light);

@@ -24,9 +24,10 @@ uniform Parameters { DirectLightParameters parameters; };
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"
 #include "media/in_scattering/spot_cone.glsl"
-readonly buffer Closures;
+#include "media/medium_gather.glsl"
 readonly buffer Rays;
 readonly buffer CameraPaths;
+readonly buffer MediumVertices;
 writeonly buffer ShadowRays;
 writeonly buffer LightTriangles;
 writeonly buffer Contributions;
@@ -37,7 +38,8 @@ writeonly buffer ShadowMedia;
 struct MediumSegment {
     Ray ray;
     float far;
-    uint flags;  // of the path
+    uint flags;      // of the path
+    vec3 thickness;  // of the media along the whole ray
 };
 
 // Equiangular sampling: the angle at which a point sees the points of a segment is even.
@@ -81,10 +83,24 @@ vec3 light_center(Light light, uint emissive_triangle) {
 }
 
 // Pdf of a distance by both techniques, each taken for half of the points, 1/m; of lights without a place, by the
-// first.
-float distance_pdf(MediumSegment segment, bool has_place, Equiangular angles, float distance) {
-    float pdf = scattered_flight_pdf(segment.flags, segment.ray, segment.far, distance);
+// first. transmittance: up to the distance.
+float distance_pdf(MediumSegment segment, bool has_place, Equiangular angles, float distance, out vec3 transmittance) {
+    float pdf =
+        scattered_flight_pdf(segment.flags, segment.ray, segment.far, distance, segment.thickness, transmittance);
     return has_place ? 0.5 * (pdf + equiangular_pdf(angles, distance)) : pdf;
+}
+
+// MIS weight of a shadow ray to the environment, which a path that the media scatter meets as well; pdf: of the shadow
+// ray among those to the environment, 1/sr.
+float world_mis_weight(CameraPath path, Ray ray, float distance, vec3 scattered, Light light, float pdf) {
+#ifndef PORTALS
+    if (path.medium_passing < 1.0) {
+        vec3 scattering = path_medium(path.flags, PlaceOnRay(ray.origin, ray.direction, distance)).scattering;
+        float phase_pdf = dot(scattered, vec3(1.0)) / max(dot(scattering, vec3(1.0)), 1e-30);
+        return power_heuristic(pdf * light.selection_probability, phase_pdf);
+    }
+#endif
+    return 1.0;
 }
 
 void main() {
@@ -93,17 +109,16 @@ void main() {
     leave_no_light(index);
     Ray ray = rays[index];
     CameraPath path = camera_paths[index];
-    if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u
-        || bounces_of(path.depth) > iteration.camera_bounces)
-        return;
+    bool takes_media = (path.flags & PATH_FINAL_GATHER) == 0u || is_medium_gather(path);
+    if (!(ray.maximum_distance > 0.0) || !takes_media || bounces_of(path.depth) > iteration.camera_bounces) return;
     if (!path_may_scatter(path.flags)) return;
-    float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
-    MediumSegment segment = MediumSegment(ray, far, path.flags);
+    float far = medium_vertices[index].far;
+    MediumSegment segment = MediumSegment(ray, far, path.flags, medium_vertices[index].thickness);
     uvec4 choices =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_IN_SCATTERING << 24u));
     vec4 u = scrambled_sobol4(parameters.light_sample, choices),
          v = scrambled_sobol4(parameters.light_sample, pcg4d(choices));
-    float distance = sample_scattered_flight(path.flags, ray, far, u.xy).distance;
+    float distance = sample_scattered_flight(path.flags, ray, far, segment.thickness, u.xy);
     LightChoice choice = choose_light_at(lit_point(ray.origin + distance * ray.direction),
                                          chosen_environment_irradiance(ray.origin, false), v.x, v.y);
     if (!(choice.probability > 0.0)) return;
@@ -118,14 +133,15 @@ void main() {
         angles = equiangular(segment, light_center(light, choice.triangle), range);
         if (u.w < 0.5) distance = clamp(equiangular_distance(angles, u.z), range.x, range.y);
     }
-    float pdf = distance_pdf(segment, has_place, angles, distance);
+    vec3 transmittance;
+    float pdf = distance_pdf(segment, has_place, angles, distance, transmittance);
     vec3 position = ray.origin + distance * ray.direction;
     LightSample sampled = sample_light(light, choice.triangle, position, v.zw);
     if (!(pdf > 0.0) || !(largest(sampled.weight) > 0.0)) return;
     if (sampled.triangle != NO_TRIANGLE && (emitter_traits(sampled.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u) return;
     vec3 scattered = scattered_phase(path.flags, PlaceOnRay(ray.origin, ray.direction, distance),
                                      dot(sampled.direction, ray.direction));
-    vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, distance);
+    if (light.kind == LIGHT_WORLD) scattered *= world_mis_weight(path, ray, distance, scattered, light, sampled.pdf);
     if (parameters.crosses_media == 0u)
         transmittance *= segment_transmittance(path.flags, position, sampled.direction, sampled.distance);
     shadow_media[index] = path.flags & ~PATH_MASK;

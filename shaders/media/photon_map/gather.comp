@@ -28,11 +28,11 @@ readonly buffer PhaseFunctions;
 #include "media/free_flight.glsl"
 #include "media/thin_media.glsl"
 #include "media/straight_paths.glsl"
-readonly buffer Triangles;
+#include "media/medium_gather.glsl"
 #include "density_estimation/photon_grid/cells.glsl"
 readonly buffer Rays;
 readonly buffer CameraPaths;
-readonly buffer Closures;
+readonly buffer MediumVertices;
 buffer Photons;
 readonly buffer PhotonOrigins;
 #include "common/photon_depth.glsl"
@@ -58,7 +58,15 @@ struct GatherPoint {
     PlaceOnRay at;
     uint flags;
     uint depth;
+    uint media;      // vertices of the path in media, with this one
+    bool takes_all;  // photons, or only those that have come straight to the medium
 };
+
+// Whether nothing but specular surfaces has scattered a photon before.
+bool has_come_straight(uint photon) {
+    return medium_count(photons[photon].bounce_counts) == 0u
+           && is_light_direct(photons[photon].flags, photons[photon].depth);
+}
 
 // Radiance that a photon adds.
 vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {
@@ -89,7 +97,8 @@ void add_light(uint pixel, uint photon, vec3 radiance) {
     if ((parameters.light_sums & LIGHT_SUMS_GROUPS) != 0u)
         add_to_group_sum(pixel, photon_origins[photon_path_of(photons[photon].path)].light_group, false, radiance);
     uint flags = photons[photon].flags, first = first_scatter(history);
-    bool indirect = is_indirect(flags, photons[photon].bounce_counts, photons[photon].depth);
+    bool indirect =
+        is_indirect(flags, photons[photon].bounce_counts, photons[photon].depth) || is_scattered_by_medium(history);
     if ((parameters.light_sums & LIGHT_SUMS_VOLUME) != 0u)
         add_to_light_sum(pixel, first == SCATTER_NONE ? volume_sum(indirect) : scattered_sum(first, true), radiance);
     bool is_caustic = (history & HISTORY_CAUSTIC) != 0u || (flags & PHOTON_CAUSTIC) != 0u;
@@ -104,15 +113,18 @@ void collect_photon(inout Collected collected, uint pixel, uint photon, vec3 rad
 }
 
 GatherPoint gather_point(uint index, CameraPath path, Ray ray) {
-    float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;
+    float far = medium_vertices[index].far;
     uvec4 scramble =
         pcg4d(uvec4(parameters.first_pixel + index, parameters.segment, iteration.seed, STAGE_MEDIUM_PHOTONS << 24u));
-    FreeFlight flight = sample_scattered_flight(path.flags, ray, far, scrambled_sobol(iteration.number - 1u, scramble));
-    vec3 transmittance = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance);
-    vec3 weight = path.throughput * transmittance / max(flight.pdf, 1e-30);
-    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
-    return GatherPoint(ray.origin + flight.distance * ray.direction, ray.direction, weight,
-                       path_medium(path.flags, at).scattering, at, path.flags, path.depth);
+    vec3 thickness = medium_vertices[index].thickness, transmittance;
+    float distance =
+        sample_scattered_flight(path.flags, ray, far, thickness, scrambled_sobol(iteration.number - 1u, scramble));
+    float pdf = scattered_flight_pdf(path.flags, ray, far, distance, thickness, transmittance);
+    vec3 weight = path.throughput * transmittance / max(pdf, 1e-30);
+    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, distance);
+    return GatherPoint(ray.origin + distance * ray.direction, ray.direction, weight,
+                       path_medium(path.flags, at).scattering, at, path.flags, path.depth,
+                       medium_count(path.bounce_counts) + 1u, !(path.medium_passing < 1.0));
 }
 
 void main() {
@@ -120,7 +132,9 @@ void main() {
     if (index == NO_PATH) return;
     Ray ray = rays[index];
     CameraPath path = camera_paths[index];
-    if (!(ray.maximum_distance > 0.0) || (path.flags & PATH_FINAL_GATHER) != 0u) return;
+    bool takes_media = (path.flags & PATH_FINAL_GATHER) == 0u || is_medium_gather(path);
+    if (!(ray.maximum_distance > 0.0) || !takes_media) return;
+    if (parameters.straight_photons == 0u && path.medium_passing < 1.0) return;
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
     if (!path_may_scatter(path.flags)) return;
     if (parameters.draws_beams != 0u && is_straight(path.flags) && is_thin(path.flags, parameters.least_free_path))
@@ -144,7 +158,7 @@ void main() {
     radius = crowded_radius(radius, float(found) / float(cells));
     if (has_any_grid(path.flags))
         point.weight *= scattering_over_mean(path.flags, point.position, ray.direction, point.scattering, radius);
-    else point.weight /= 1.0 - kernel_beyond_surfaces(ray, closures[index], point.at.distance, radius);
+    else point.weight /= 1.0 - kernel_beyond_surfaces(ray, medium_vertices[index], point.at.distance, radius);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
     uint passed = 0u, corner = 0u, next = ranges[0].x;
     bool any = false;
@@ -164,7 +178,8 @@ void main() {
         uvec4 candidate = sorted_photons[next++];
         vec3 offset = uintBitsToFloat(candidate.xyz) - point.position;
         float distance2 = dot(offset, offset);
-        if (distance2 >= radius * radius || exceeds_depth(point.depth, candidate.w, 1u)) continue;
+        if (distance2 >= radius * radius || exceeds_depth(point.depth, candidate.w, point.media)) continue;
+        if (!point.takes_all && !has_come_straight(candidate.w)) continue;
         vec3 radiance = photon_radiance(point, candidate.w, distance2, radius);
         if (!(largest(radiance) > 0.0)) continue;
         any = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The three-dimensional kernel of photons in media, 15 (1 - x^2) / (8 pi), whose integral over the unit ball is 1, and
 // the part of it that lies in the medium: beyond a boundary there are no photons. The includer includes
-// materials/medium.glsl and declares the block Triangles before.
+// materials/medium.glsl before.
 
 float photon_kernel(float distance2, float radius) {
     float inverse = 1.0 / radius;
@@ -15,22 +15,22 @@ float kernel_beyond_plane(float height) {
     return 0.5 - 15.0 / 16.0 * height * (1.0 - h2 * (2.0 / 3.0 - 0.2 * h2));
 }
 
-// The part beyond the surfaces at which a ray begins and ends, as if they were planes; position: at so many meters from
-// the beginning and the end of the ray.
-float kernel_beyond_surfaces(Ray ray, Closure end, float distance, float radius) {
+// Most of the kernel that lies beyond both surfaces of a thin layer.
+const float MOST_BEYOND = 0.75;
+
+// The part beyond the surfaces at which a ray in media begins and ends, as if they were planes, where the media end
+// there as well; distance: of the kernel's center from the beginning, meters.
+float kernel_beyond_surfaces(Ray ray, MediumVertex segment, float distance, float radius) {
     float beyond = 0.0;
-    if (ray.source_triangle != NO_TRIANGLE) {
-        vec3 v0 = triangle_vertices[3u * ray.source_triangle].xyz;
-        vec3 e1 = triangle_vertices[3u * ray.source_triangle + 1u].xyz - v0,
-             e2 = triangle_vertices[3u * ray.source_triangle + 2u].xyz - v0;
-        beyond += kernel_beyond_plane(abs(dot(normalize(cross(e1, e2)), ray.direction)) * distance / radius);
+    if (segment.near_loss > 0.0) {
+        float cosine = abs(dot(unpack_unit_vector(segment.near_normal), ray.direction));
+        beyond += segment.near_loss * kernel_beyond_plane(cosine * distance / radius);
     }
-    if (closure_hit(end)) {
-        float cosine = abs(dot(unpack_unit_vector(end.geometric_normal), ray.direction));
-        beyond += kernel_beyond_plane(cosine * (end.distance - distance) / radius);
+    if (segment.far_loss > 0.0) {
+        float cosine = abs(dot(unpack_unit_vector(segment.far_normal), ray.direction));
+        beyond += segment.far_loss * kernel_beyond_plane(cosine * (segment.far - distance) / radius);
     }
-    // A medium may go on behind a surface that only passes light.
-    return min(beyond, 0.5);
+    return min(beyond, MOST_BEYOND);
 }
 
 // Most that the density at a point is raised over the kernel's mean.

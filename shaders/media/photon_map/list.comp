@@ -9,6 +9,8 @@ layout(local_size_x = 64) in;
 #include "common/iteration.glsl"
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
+#include "common/path_depth.glsl"
+#include "common/volume_bounces.glsl"
 uniform Parameters { ListMediumPhotonsParameters parameters; };
 readonly buffer Photons;
 readonly buffer PhotonRange;
@@ -18,5 +20,8 @@ void main() {
     uint index = invocation_index();
     if (index >= min(parameters.count, photon_end) || (photons[index].bounce_counts & PHOTON_IN_MEDIUM) == 0u) return;
     if (iteration.next_event != 0u && (photons[index].flags & PHOTON_DIRECT) != 0u) return;
+    bool is_straight =
+        medium_count(photons[index].bounce_counts) == 0u && is_light_direct(photons[index].flags, photons[index].depth);
+    if (is_straight) atomicAdd(straight_photon_count, 1u);
     medium_photons[atomicAdd(medium_photon_count, 1u)] = index;
 }

@@ -146,8 +146,8 @@ void main() {
     store_beam(index, path, ray, passes ? far : flight.distance, next_random(random));
     if (passes) {
         // Surfaces weaken the flux by the transmittance, but nothing weakens what escapes.
-        vec3 weight = vec3(1.0 / max(flight.passing, 1e-30));
-        if (escapes) weight *= segment_transmittance(path.flags, ray.origin, ray.direction, far);
+        vec3 weight = vec3(1.0 / max(dot(flight.transmittance, vec3(1.0 / 3.0)), 1e-30));
+        if (escapes) weight *= flight.transmittance;
         else weight *= lamp_factor(index, path, ray, far);
         pass_on(index, path.flux * weight);
         return;
@@ -159,7 +159,7 @@ void main() {
     }
     vec3 position = ray.origin + flight.distance * ray.direction;
     PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, flight.distance);
-    vec3 weight = segment_transmittance(path.flags, ray.origin, ray.direction, flight.distance) / flight.pdf;
+    vec3 weight = flight.transmittance / flight.pdf;
     float distance = photon_differentials[index].before + flight.distance;
     vec3 scattering = path_medium(path.flags, at).scattering;
     store_photon(index, path, position, ray.direction, path.flux * weight * scattering, distance);

@@ -44,9 +44,9 @@ MediumPoint sample_grid(Light light, EmissiveMedium source, float part, vec2 pla
     voxel += uvec3(local % side, local / side % side, local / (side * side));
     MediumPoint none = MediumPoint(light.position, vec3(0.0));
     if (any(greaterThanEqual(voxel, voxels))) return none;
-    uint brick = brick_place(source.medium, voxel / BRICK_SIDE);
+    uint brick = brick_place(media[source.medium].first_word, voxels, voxel / BRICK_SIDE);
     if (brick == 0u) return none;
-    vec3 emission = span_coefficients(source.medium, GridSpan(brick, voxel_number(voxel), 0.0)).emission;
+    vec3 emission = span_coefficients(source.medium, GridSpan(brick, voxel_number(voxel), 0.0, 0.0)).emission;
     vec3 at = vec3(voxel) + 0.5 + sample_tent(vec3(place, unit_float(bits.z)));
     at = max(at, 1.0 - at);
     at = min(at, 2.0 * vec3(voxels) - 1.0 - at);

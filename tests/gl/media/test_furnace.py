@@ -4,19 +4,24 @@
 import fog
 import numpy as np
 import pytest
+import scenes
 from boxes import Box
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.density_estimation.radii import shrinkage_in
 from rppm_addon.scene import World
 
 EYE = (0.5, -4.0, 0.7)
+CLEAR = Lobe(LobeKind.TRANSPARENT)
 
 
-def furnace(*media: Box, half: float = 0.12, **settings):
-    """The media in a world of radiance 1."""
+def furnace(*media: Box | tuple, half: float = 0.12, **settings):
+    """The media and other parts in a world of radiance 1."""
     camera = fog.camera(EYE, (0.0, 0.0, 0.0), half)
     settings = {"photons": 32768, "iterations": 6, "volume_bounces": 1024} | settings
-    return fog.scene_of(camera, *(box.part() for box in media), world=World(np.ones(3)), **settings)
+    return fog.scene_of(
+        camera, *(part.part() if isinstance(part, Box) else part for part in media), world=World(np.ones(3)), **settings
+    )
 
 
 def lost(mapper, extinction: float) -> float:
@@ -69,6 +74,41 @@ def test_within(mapper):
     assert_furnace(mapper, scene, 2.0)
 
 
+def test_a_dense_box(mapper):
+    """Camera paths are scattered before photons count, so that nearly all of what the kernel misses is behind."""
+    scene = furnace(Box(scattering=8.0, g=0.4), photons=8192)
+    pictures = []
+    for seed in range(8):
+        scene.settings = scene.settings.with_values(seed=seed)
+        mapper.build(scene)
+        for _ in range(scene.settings.iterations):
+            mapper.iterate()
+        pictures.append(mapper.film.read_radiance()[..., :3])
+    fog.assert_expected(np.array(pictures, np.float64), 1.0, 0.05, bias=0.02)
+
+
+def test_clear_surfaces_within(mapper):
+    """Photons are on both sides of surfaces that the medium does not end at, so that none of the kernel is missed."""
+
+    def mean(*inner: float) -> tuple[float, float]:
+        boxes = [(scenes.box("inner", half), material("inner", CLEAR), np.eye(4)) for half in inner]
+        scene = furnace(Box(scattering=2.0), *boxes, use_final_gather=False, transparent_max_bounces=64)
+        found = []
+        for seed in range(8):
+            scene.settings = scene.settings.with_values(seed=seed)
+            mapper.build(scene)
+            for _ in range(scene.settings.iterations):
+                mapper.iterate()
+            found.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
+        return float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
+
+    (plain, plain_error), (cut, cut_error) = mean(), mean(0.8, 0.6, 0.4)
+    noise = np.hypot(plain_error, cut_error)
+    print(f"\n{plain:.4f} and with surfaces {cut:.4f}, +- {noise:.4f}")
+    assert noise < 0.01
+    assert abs(cut - plain) < 0.01 + 4.0 * noise
+
+
 @pytest.mark.parametrize("dimensions", [1, 3])
 def test_the_kernel_shrinks_at_the_best_rate(dimensions):
     """r ~ i^(-1 / (d + 4)), by which the squared bias, ~ r^4, falls as fast as the variance, ~ 1 / (i r^d)."""
@@ -97,7 +137,7 @@ def runs(mapper, scene, seeds, stops):
 def test_noise_falls_as_the_kernel_shrinks(mapper):
     """In a white furnace all noise is that of the number of photons in the kernel, as each ray gives the same
     elsewhere. A sample's variance is as 1 / r^3, of which that of the mean follows."""
-    scene, stops = furnace(Box(scattering=2.0), half=0.2, photons=2048), [2, 16]
+    scene, stops = furnace(Box(scattering=2.0), half=0.2, photons=2048, use_final_gather=False), [2, 16]
     found, radii = runs(mapper, scene, 12, stops)
     alpha = scene.settings.alpha
     shrinkage = np.array([shrinkage_in(3, number, alpha) for number in range(1, stops[-1] + 1)])

@@ -22,7 +22,7 @@ class PathHistory(enum.IntFlag):
     is not transparent."""
 
     AGAIN = 4
-    """More than one surface has scattered the path."""
+    """More than one surface has scattered the path, or a medium has."""
     DIFFUSE = 8
     """The last scattering was diffuse."""
     CAUSTIC = 16
@@ -78,6 +78,7 @@ CAMERA_PATH = Record(
     arrived_counts="uint",
     bounce_counts="uint",
     least_pdf="float",
+    medium_passing="float",
 )
 """A camera path between two segments: ``total_length`` is the sum of the segments in Eq. 4, with the way to
 the clip start, ``straight_length`` of those that led straight through surfaces since the last event of another kind,
@@ -88,8 +89,12 @@ that of the disk of Eq. 3 in iteration 1, likewise at distance 1, ``scatter_pdf`
 ``photon_radius`` is the radius of the disk, meters, in which photons count at the vertex where the last ray of the
 path's final gather left: photons bring some of the light there that this ray brings, too. ``arrived_counts`` are the
 bounces by type (shaders/common/bounce_counts.glsl) of the path as it came to its vertex, and ``bounce_counts`` those of
-the path as it goes on from there; both are 0 where nobody asks. ``least_pdf`` is the least of the pdfs by which lobes
-have scattered the path, 1/sr, where Filter Glossy asks."""
+the path as it goes on from there; both are 0 where nobody asks. The fourth count of ``bounce_counts`` is of vertices in
+media. ``medium_passing`` is the probability with which media leave the path to the surface at the end of its ray, 1
+where they do not scatter it, or SCATTERED_BY_MEDIUM where they have. ``least_pdf`` is the least of the pdfs by
+which lobes and media have scattered the path, 1/sr, where Filter Glossy asks."""
+SCATTERED_BY_MEDIUM = -1.0
+Constants("CameraPathsInMedia", SCATTERED_BY_MEDIUM=SCATTERED_BY_MEDIUM)
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")
 StorageBlock("Radiances", "vec4 radiances[];")
 """Radiance of the pixels of a band, W/(m^2 sr), and alpha."""

@@ -48,6 +48,9 @@ class GatherFlag(enum.IntFlag):
     """The importon is at the end of the ray of a final gather, and its light counts at the origin of that ray."""
 
 
+IMPORTON_MEDIUM_SHIFT = 2
+"""Above the flags, the number of vertices in media of the importon's path, in five bits."""
+Constants("ImportonMedia", IMPORTON_MEDIUM_SHIFT=IMPORTON_MEDIUM_SHIFT)
 PHOTON_FACTOR_SHIFT = 8
 """Above the flags, what global photons are multiplied by; 0 is 1."""
 Constants("PhotonFactor", PHOTON_FACTOR_SHIFT=PHOTON_FACTOR_SHIFT)

@@ -28,6 +28,7 @@ class RandomStage(enum.IntEnum):
     IN_SCATTERING = 16
     MEDIUM_PHOTONS = 17
     AMBIENT_OCCLUSION = 18
+    CAMERA_SCATTERING = 19
 
 
 Constants("RandomStages", STAGE=RandomStage)

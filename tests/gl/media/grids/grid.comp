@@ -19,7 +19,8 @@ void main() {
     if (index >= parameters.count) return;
     vec4 start = test_rays[2u * index], way = test_rays[2u * index + 1u];
     uint flags = parameters.media << FIRST_MEDIUM;
-    float flight = segment_free_flight(flags, start.xyz, way.xyz, start.w, 1, way.w);
+    vec3 passed;
+    float flight = segment_free_flight(flags, start.xyz, way.xyz, start.w, 1, way.w, passed);
     results[4u * index] = vec4(segment_thickness(flags, start.xyz, way.xyz, start.w), flight);
     results[4u * index + 1u] = vec4(segment_emission(flags, start.xyz, way.xyz, start.w), 0.0);
     MediumCoefficients medium = path_medium(flags, PlaceOnRay(start.xyz, way.xyz, 0.5 * start.w));
