@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "common/luminance.glsl"
 #include "materials/nodes/hsv.glsl"
 
 void node_invert(float factor, vec3 color, out vec3 result) { result = mix(color, 1.0 - color, factor); }

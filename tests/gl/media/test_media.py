@@ -8,6 +8,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
+from rppm_addon.integrator.surfaces.volume_insets import inset_matrix
 from rppm_addon.scene import Camera, DirectLight, Instance, Light, LightKind, RenderSettings, Scene, Texels, World
 
 ABSORPTION, OTHER = np.array([0.0, 0.5, 0.8]), np.array([0.3, 0.1, 0.2])
@@ -48,6 +49,12 @@ def at(z: float, scale: float = 1.0) -> np.ndarray:
     return scenes.placed(0.0, 0.0, z, scale)
 
 
+def drawn_together(matrix: np.ndarray, number: int = 0) -> float:
+    """Fraction to which the box of an instance shrinks whose surface bounds a volume alone."""
+    box = np.array([[-1.0] * 3, [1.0] * 3])
+    return float(inset_matrix(matrix, box, number)[2, 2] / matrix[2, 2])
+
+
 def rays(distance: float = 1.0) -> np.ndarray:
     """(SIZE, SIZE, 1) lengths to what the pixels see at distance 1 m below, from so many meters above it."""
     x = HALF * (2 * (np.arange(SIZE) + 0.5) / SIZE - 1)
@@ -84,7 +91,7 @@ def test_a_card_seen_within_a_body(renderer, surface):
 
 def test_the_world_seen_from_a_body(renderer):
     scene = dataclasses.replace(scene_of((0, at(0.0, 4.0), CLEAR)), world=World(np.ones(3)))
-    np.testing.assert_allclose(picture(renderer, scene), passed(4.0 * rays()), rtol=1e-5)
+    np.testing.assert_allclose(picture(renderer, scene), passed(4.0 * drawn_together(at(0.0, 4.0)) * rays()), rtol=1e-5)
 
 
 def test_lamps_seen_in_a_body(renderer):
@@ -186,8 +193,9 @@ def test_a_body_that_shines(renderer, share, within):
     """Before a card that shines as well."""
     absorption = share * ABSORPTION
     body = body_of(TRANSPARENT, absorption, SHINING)
-    scene = scene_of((0, at(0.0 if within else -1.5), CLEAR), (1, at(-3.0), GLOW), body=body)
-    length = rays() * (1.0 if within else 2.0)
+    place = at(0.0 if within else -1.5)
+    scene = scene_of((0, place, CLEAR), (1, at(-3.0), GLOW), body=body)
+    length = rays() * (1.0 if within else 2.0) * drawn_together(place)
     np.testing.assert_allclose(
         picture(renderer, scene), shone(length, absorption) + passed(length, absorption), rtol=2e-5
     )

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from support.graphs import surface_graph
 from support.lobes import Lobe, LobeKind, material
-from test_media import GLOW, LAMP, LIT, WHITE, at, passed, picture, rays, scene_of
+from test_media import GLOW, LAMP, LIT, WHITE, at, drawn_together, passed, picture, rays, scene_of
 
 from rppm_addon.scene import DirectLight, Material
 
@@ -27,7 +27,8 @@ def nested(*others, body: Material, **settings):
 
 def test_a_card_seen_through_several(renderer):
     scene = nested((1, at(-1.0), GLOW), body=clear())
-    np.testing.assert_allclose(picture(renderer, scene), passed(2.0 * rays(), ABSORPTION), rtol=1e-5)
+    length = sum(0.2 * k * drawn_together(at(0.0, 0.2 * k), k - 1) for k in range(1, 5))
+    np.testing.assert_allclose(picture(renderer, scene), passed(length * rays(), ABSORPTION), rtol=1e-5)
 
 
 def test_transparent_surfaces_are_counted(renderer):

@@ -9,13 +9,12 @@ from ..scenes import box, camera, light, place
 from .scenes import SCENES, begin, medium, scatter
 
 PATHS = {"photons": 65536, "iterations": 24, "max_bounces": 64, "transparent_max_bounces": 64}
-EMISSION = pytest.mark.xfail(strict=True, reason="media do not scatter the light that they emit")
 CASES = [
     pytest.param(
         name,
         bounces,
         id=f"{name}-{bounces}",
-        marks=[pytest.mark.long] * (bounces > 0) + [EMISSION] * (name == "overlapping volumes" and not bounces),
+        marks=[pytest.mark.long] * (bounces > 0),
     )
     for name in SCENES
     for bounces in (0, 8)
