@@ -34,25 +34,34 @@ class Program:
 
 
 def all_programs() -> list[Program]:
-    """Compute programs and draws: a fragment shader is drawn with the only vertex shader in its folder."""
+    """Compute programs and draws: a fragment shader is drawn with each vertex shader in its folder."""
     checked = variants()
-    vertices = {PurePosixPath(variant.name).parent: variant for variant in checked if variant.name.endswith(".vert")}
+    vertices: dict[PurePosixPath, list[Variant]] = {}
+    for variant in checked:
+        if variant.name.endswith(".vert"):
+            vertices.setdefault(PurePosixPath(variant.name).parent, []).append(variant)
     return list(_programs(checked, vertices))
 
 
 def _words(defines: Mapping[str, object]) -> list[str]:
-    """List what tells variants of a file apart: names of defines or, where these name a file to include, its folder."""
-    return [
-        PurePosixPath(str(value)).parent.name if "/" in str(value) else name for name, value in sorted(defines.items())
-    ]
+    """List what tells variants of a file apart: names of defines or, where these name a file to include, its folder and
+    what its name adds to "traverse"."""
+    words = []
+    for name, value in sorted(defines.items()):
+        path = PurePosixPath(str(value))
+        words += [path.parent.name, *path.stem.split("_")[1:]] if "/" in str(value) else [name]
+    return words
 
 
-def _programs(checked: list[Variant], vertices: dict[PurePosixPath, Variant]) -> Iterator[Program]:
+def _programs(checked: list[Variant], vertices: dict[PurePosixPath, list[Variant]]) -> Iterator[Program]:
     for variant in checked:
         path = PurePosixPath(variant.name)
         words = [variant.name, *_words(variant.defines), *([variant.kinds] if variant.kinds else [])]
         if path.suffix == ".comp":
             yield Program(" ".join(words), {"comp": variant.expand()})
         elif path.suffix == ".frag":
-            vertex = vertices[path.parent].expand()
-            yield Program(" ".join(words), {"vert": vertex, "frag": variant.expand(beside=vertex)})
+            beside = vertices[path.parent]
+            for vertex_variant in beside:
+                vertex = vertex_variant.expand()
+                stem = [PurePosixPath(vertex_variant.name).stem] if len(beside) > 1 else []
+                yield Program(" ".join(words + stem), {"vert": vertex, "frag": variant.expand(beside=vertex)})
