@@ -73,6 +73,7 @@ def test_light_groups_add_up_to_combined(renderer, settings):
     scene.lights[0].strength, scene.lights[0].light_group = scene.lights[0].strength * (1.0, 0.0, 0.0), "lamps"
     scene.lights[1].strength, scene.lights[1].light_group = scene.lights[1].strength * (0.0, 1.0, 0.0), "suns"
     scene.world.radiance, scene.world.light_group = np.array([0.0, 0.0, 0.6]), "world"
+    scene.world.volume = None  # neither the sun nor the world shines through endless fog
     for material in scene.materials:
         for node in material.graph.nodes:
             if node.kind == "emission":
