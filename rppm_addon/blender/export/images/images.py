@@ -27,7 +27,6 @@ _LARGE = 1 << 20
 """Pixels from which on an image is read in steps."""
 _FIRST_PASS = PassSelection()
 _DATA = {"Non-Color", "Raw", "scene_linear"}
-_LINEAR_SPACES = {"Linear Rec.709", "Linear", *_DATA}
 
 
 class ImageTable:
@@ -178,7 +177,7 @@ def _multilayer_pass(image: bpy.types.Image, loaded: bpy.types.Image, selection:
     pixels = _four_channels(pixels, is_float=True)
     if is_data:
         return Image(look.name, pixels, "LINEAR")
-    if look.space not in _LINEAR_SPACES:
+    if not look.is_linear:
         pixels[..., :3] = scene_linear(pixels[..., :3], look.space)
     return _encoded(look, pixels)
 
@@ -290,11 +289,16 @@ class _Look:
         return 2 if self.alpha_mode == "PREMUL" and self.is_in_file else 1
 
     @property
+    def is_linear(self) -> bool:
+        """True where the file has linear colors of the working space, or data."""
+        space = working_space()
+        return self.space in {*_DATA, space.name} or (space is REC709 and self.space == "Linear")
+
+    @property
     def needs_blender(self) -> bool:
         """Whether Blender is asked to convert its colors."""
-        if self.is_float or self.space in _DATA or self.space == working_space().name:
-            return False
-        return working_space() is not REC709 or (self.space != "sRGB" and self.space not in _LINEAR_SPACES)
+        is_decoded = self.space == "sRGB" and working_space() is REC709
+        return not (self.is_float or self.is_linear or is_decoded)
 
 
 def _encoded(look: _Look, pixels: np.ndarray) -> Image:

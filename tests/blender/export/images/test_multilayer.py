@@ -12,6 +12,7 @@ from blender_scenes import add_mesh, export
 from node_trees import add_node, link, surface
 
 from rppm_addon.blender.export.images.multilayer import PassSelection, read_pass, split_channel
+from rppm_addon.scene.common.working_space import ACESCG
 
 HEIGHT, WIDTH = 3, 5
 PASSES = {
@@ -113,6 +114,25 @@ def test_textures_show_what_their_users_select(scene, path, packed):
     found = [image.pixels for image in exported.images]
     for expected in (pixels_of("View.Combined"), pixels_of("View.Normal")):
         assert any(np.array_equal(pixels[..., : expected.shape[-1]], expected) for pixels in found)
+
+
+@pytest.mark.skipif(not hasattr(bpy.data, "colorspace"), reason="before Blender 5.0 all files have one working space")
+@pytest.mark.parametrize("space", ["Linear Rec.709", "ACEScg", "Non-Color"])
+def test_passes_are_of_the_working_space(scene, path, space):
+    """As in Cycles, colors of another linear space are converted."""
+    bpy.ops.wm.set_working_color_space(working_space="ACEScg")
+    image = bpy.data.images.load(path)
+    image.colorspace_settings.name = space
+    layer = list(layers_of_blender(image)).index("View")
+    material, emission = surface("ShaderNodeEmission")
+    texture = add_node(material.node_tree, "ShaderNodeTexImage", image=image)
+    select(texture.image_user, PassSelection(layer, 0))
+    link(material.node_tree, texture.outputs["Color"], emission.inputs["Color"])
+    add_mesh(scene, material=material)
+    (exported,) = export(scene).images
+    colors = pixels_of("View.Combined")[..., :3]
+    expected = ACESCG.from_rec709(colors) if space == "Linear Rec.709" else colors
+    np.testing.assert_allclose(exported.pixels[..., :3], expected, atol=1e-5)
 
 
 @pytest.mark.parametrize(
