@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Open Image Denoise 2 by its C interface (include/OpenImageDenoise/oidn.h), on the processor or a GPU."""
 
+import contextlib
 import ctypes
 import os
 import sys
@@ -120,11 +121,12 @@ class OpenImageDenoise:
         arrays = {name: np.ascontiguousarray(image, np.float32) for name, image in images.items()}
         height, width = next(iter(arrays.values())).shape[:2]
         arrays["output"] = np.empty((height, width, 3), np.float32)
-        with self._lock:
+        with self._lock, contextlib.ExitStack() as held:
             call = self._calls
             filter_ = call["oidnNewFilter"](self._device, b"RT")
+            held.callback(call["oidnReleaseFilter"], filter_)
             shape = width, height, 0, 0, 0  # neither offset nor gaps
-            buffers = self._copied(arrays) if self._copies_images else {}
+            buffers = self._copied(arrays, held) if self._copies_images else {}
             for name, array in arrays.items():
                 if name in buffers:
                     call["oidnSetFilterImage"](filter_, name.encode(), buffers[name], _FORMAT_FLOAT3, *shape)
@@ -140,18 +142,16 @@ class OpenImageDenoise:
             if buffers:
                 output = arrays["output"]
                 call["oidnReadBuffer"](buffers["output"], 0, output.nbytes, output.ctypes.data)
-            call["oidnReleaseFilter"](filter_)
-            for buffer in buffers.values():
-                call["oidnReleaseBuffer"](buffer)
             self._check("cannot denoise the picture")
         return arrays["output"]
 
-    def _copied(self, arrays: dict[str, np.ndarray]) -> dict[str, int]:
-        """Return buffers of the device that hold images, by name."""
+    def _copied(self, arrays: dict[str, np.ndarray], held: contextlib.ExitStack) -> dict[str, int]:
+        """Return buffers of the device that hold images, by name, until the stack is closed."""
         buffers = {}
         for name, array in arrays.items():
             buffers[name] = self._calls["oidnNewBuffer"](self._device, array.nbytes)
             self._check("has too little memory on its device")
+            held.callback(self._calls["oidnReleaseBuffer"], buffers[name])
             if name != "output":
                 self._calls["oidnWriteBuffer"](buffers[name], 0, array.nbytes, array.ctypes.data)
         return buffers

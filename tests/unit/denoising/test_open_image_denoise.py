@@ -170,7 +170,7 @@ class FakeGpu:
     def __getattr__(self, name):
         if not name.startswith("oidn"):
             raise AttributeError(name)
-        return self.functions.setdefault(name, lambda *_: 0)
+        return self.functions.setdefault(name, Callable(lambda *_: 0))
 
 
 class Callable:
@@ -183,18 +183,34 @@ class Callable:
         return self.function(*given)
 
 
-def test_a_gpu_denoises_where_the_library_knows_one(monkeypatch, tmp_path):
+@pytest.fixture
+def fake_gpu(monkeypatch, tmp_path):
+    """Stands for all files of libraries, of which there is library.so."""
     fake = FakeGpu()
     for name in dir(FakeGpu):
         if name.startswith("oidn"):
             setattr(fake, name, Callable(getattr(fake, name)))
     (tmp_path / "library.so").touch()
     monkeypatch.setattr(ctypes, "CDLL", lambda path: fake)
+    return fake
+
+
+def test_a_gpu_denoises_where_the_library_knows_one(fake_gpu, tmp_path):
+    fake = fake_gpu
     library = OpenImageDenoise(tmp_path / "library.so", use_gpu=True)
     assert (fake.opened, library.device_name) == ([1], "A card")
     denoised = library.filter({"color": np.ones((2, 3, 3))}, DenoisingQuality.HIGH)
     assert (denoised == 0.25).all() and fake.buffers == [None, None]
     assert OpenImageDenoise(tmp_path / "library.so").device_name == "the processor"
+
+
+def test_a_gpu_without_memory_gets_its_buffers_back(fake_gpu, tmp_path):
+    """Otherwise each failure would leave less of it, which the renderer needs as well."""
+    library = OpenImageDenoise(tmp_path / "library.so", use_gpu=True)
+    fake_gpu.functions["oidnGetDeviceError"].function = lambda *_: len(fake_gpu.buffers) > 1
+    with pytest.raises(DenoiserError, match="too little memory on its device"):
+        library.filter({"color": np.ones((2, 3, 3))}, DenoisingQuality.HIGH)
+    assert fake_gpu.buffers[0] is None
 
 
 def test_without_a_gpu_the_processor_denoises(place, noisy):
