@@ -38,7 +38,7 @@ def overrides_of(depsgraph: bpy.types.Depsgraph) -> tuple[object, ...]:
     override, world = layer.material_override, getattr(layer, "world_override", None)
     blocks = [None if block is None else block.original.session_uid for block in (override, world)]
     groups = _light_groups(depsgraph.view_layer, world_of(depsgraph))
-    return (*blocks, layer.use_sky, layer.use_solid, layer.use_volumes, *_masks(layer.layer_collection), *groups)
+    return (*blocks, LayerFilter.of(layer), *_masks(layer.layer_collection), *groups)
 
 
 def light_group_of(owner: bpy.types.Object | bpy.types.World) -> str:
