@@ -24,7 +24,7 @@ class Material:
     """V_d of what refracts light: by it the index depends on the wavelength, and that of the nodes is n_d. None: all
     wavelengths have the same."""
     corrects_bump: bool = True
-    """Whether normals that mirror the viewer's direction to below the surface are bent, and slopes of bumps shadow
+    """True where normals that mirror the viewer's direction to below the surface are bent, and slopes of bumps shadow
     diffuse light."""
     on_round_shapes: bool = False
     """Whether it is on strands or points (MeshShape), and not on surfaces alone."""

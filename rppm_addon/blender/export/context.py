@@ -32,7 +32,7 @@ class ExportContext:
     light_links: LightLinks = field(default_factory=LightLinks)
     filter: LayerFilter = field(default_factory=LayerFilter)
     blurs_motion: bool = False
-    """Whether pictures are blurred by what moves."""
+    """True where the scene has Motion Blur on."""
     curves: CurveSettings = field(default_factory=CurveSettings)
     is_render: bool = True
     """Whether Blender evaluated what renders show, and not viewports."""

@@ -39,8 +39,10 @@ def usable_matrices(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def are_plain(matrices: np.ndarray) -> np.ndarray:
-    """Whether each of many placements, (n, 4, 4) float32, is far from singular, so that usable_matrices leaves it as it
-    is: (n,) bool. It takes a fraction of the time."""
+    """(n,) bool, True where a placement of many, (n, 4, 4) float32, is far from singular.
+
+    Such placements usable_matrices leaves as they are; this takes a fraction of its time.
+    """
     with np.errstate(all="ignore"):  # what is no number fails all comparisons
         a, b, c = (matrices[:, row, :3].T for row in range(3))
         volume = a[0] * (b[1] * c[2] - b[2] * c[1])

@@ -162,7 +162,7 @@ def _read_loaded(image: bpy.types.Image, loaded: bpy.types.Image, selection: Pas
 
 
 def _is_multilayer(image: bpy.types.Image) -> bool:
-    """Whether an image's file, which Blender has decoded, has several layers or passes."""
+    """Return whether an image's file, which Blender has decoded, has several layers or passes."""
     return image.type == "MULTILAYER"
 
 
@@ -282,8 +282,10 @@ class _Look:
 
     @property
     def times_alpha(self) -> int:
-        """How often the colors of its bytes are multiplied by alpha: Cycles takes those in files for straight, whatever
-        the user says."""
+        """Number of times, 0 to 2, that the colors of its bytes are multiplied by alpha.
+
+        Cycles takes those in files for straight, whatever the user says.
+        """
         if not self.is_associated:
             return 0
         return 2 if self.alpha_mode == "PREMUL" and self.is_in_file else 1

@@ -101,7 +101,7 @@ class InstanceAttributes:
         return None if value is None else tuple(value.tolist())
 
     def has_any(self, owner: bpy.types.Object) -> bool:
-        """Whether what an evaluated object multiplies may have attributes of its own."""
+        """Return whether what an evaluated object multiplies may have attributes of its own."""
         return self._source(owner) is not None
 
     def columns(self, owner: int, identifiers: np.ndarray, names: Iterable[str]) -> dict[str, _Column]:
@@ -269,7 +269,7 @@ class AttributeRows:
     """Values of instances by name, of which at least one has each."""
 
     def are_whole(self, count: int) -> np.ndarray:
-        """Whether each of so many instances has all attributes that any of them has of its own, (n,) bool."""
+        """(n,) bool, True where one of n instances has all attributes that any of them has of its own."""
         return np.all([np.ones(count, bool), *(found for found, _ in self.own.values())], axis=0)
 
     def columns(self, chosen: np.ndarray) -> dict[str, np.ndarray]:

@@ -93,7 +93,7 @@ class MultipliedObjects:
             self._place(prototype, entry, source, matrix, instancer)
 
     def _may_group(self, source: bpy.types.Object, selection: Selection) -> bool:
-        """Whether arrays may describe all that instances of a mesh object bring."""
+        """Return whether arrays may describe all that instances of a mesh object bring."""
         if self._placements.identify or selection.culling.is_used:
             return False
         return not (self._may_have_hair and len(source.particle_systems) > 0)

@@ -11,7 +11,7 @@ _CLIPPING = 0.00101
 
 
 def _has_velocities(source: bpy.types.Object) -> bool:
-    """Whether an evaluated object is a volume with a grid of velocities; only the names of its grids are read."""
+    """Return whether an evaluated object is a volume with a grid of velocities, by the names of its grids alone."""
     if source.type != "VOLUME":
         return False
     volume = source.data

@@ -20,7 +20,7 @@ class Omission:
     is_used: Callable[[bpy.types.ID], bool]
     """By an evaluated object, or by a scene."""
     counts_in: Callable[[bpy.types.Scene], bool] = bool
-    """Whether it matters in an evaluated scene that an object uses it."""
+    """Condition on the evaluated scene for it to matter that an object uses it."""
 
 
 def of_cycles(block: bpy.types.bpy_struct, name: str, default: object) -> object:

@@ -18,7 +18,7 @@ def _has_transparent_glass_of_cycles_only(scene: bpy.types.Scene) -> bool:
 
 
 def _is_diced_by(name: str, default: object) -> Callable[[bpy.types.Scene], bool]:
-    """Whether a scene has another value than Cycles' default of a setting of dicing, and objects to be diced."""
+    """Return a condition: a scene has another value of a setting of dicing than Cycles' default, and what to dice."""
 
     def is_used(scene: bpy.types.Scene) -> bool:
         is_set = of_cycles(scene, name, default) != default

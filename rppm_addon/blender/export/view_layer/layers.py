@@ -16,10 +16,10 @@ class LayerFilter:
     """Kinds of things that a view layer has, by its panel Filter."""
 
     environment: bool = True
-    """Whether it has the world's light."""
+    """True where it has the world's light."""
     surfaces: bool = True
     volumes: bool = True
-    """Whether it has volume objects and the gas of fluid domains. Volumes of materials are there anyway."""
+    """True where it has volume objects and the gas of fluid domains. Volumes of materials are there anyway."""
 
     @classmethod
     def of(cls, layer: bpy.types.ViewLayer) -> "LayerFilter":

@@ -27,7 +27,7 @@ class GridSource:
 
     @property
     def is_gas(self) -> bool:
-        """Whether the object is a fluid domain of gas, and no volume object."""
+        """True for a fluid domain of gas, False for a volume object."""
         return self.source.type == "MESH"
 
     def as_pointer(self) -> int:
