@@ -85,8 +85,6 @@ class InstanceReader:
         kind = source.type
         if kind not in SURFACE_TYPES or (kind == "CURVES" and not self._context.curves.shown):
             return None
-        if not self._context.filter.volumes and (kind == "VOLUME" or (kind == "MESH" and is_gas_domain(source))):
-            return None
         visibility = visibility_of(source)
         if not is_seen(visibility):
             return None
@@ -97,7 +95,7 @@ class InstanceReader:
         holder = source if multiplied is None else multiplied.instance_object
         is_own = multiplied is None or holder.data == source.data
         if kind == "VOLUME" or (kind == "MESH" and is_own and is_gas_domain(source)):
-            return self._describe_volume(source, visibility, multiplied)
+            return self._describe_volume(source, visibility, multiplied) if self._context.filter.volumes else None
         if kind == "MESH" and not self._has_faces(source, is_own):
             return None  # and its materials are not needed
         materials, mesh = self._material_slots(source), None

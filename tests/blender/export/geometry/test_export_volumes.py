@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_object, export
-from node_trees import add_node, link, new_material, node_group
+from node_trees import add_node, link, multiply_cubes, new_material, node_group
 from support.media.vdb_files import write_vdb
 
 from rppm_addon.blender.export.geometry.volumes import gas_domains, vdb_files
@@ -37,15 +37,6 @@ def smoke_material(surface=True, density=1.0):
     if surface:
         link(tree, add_node(tree, "ShaderNodeEmission").outputs[0], output.inputs["Surface"])
     return material
-
-
-def test_a_view_layer_leaves_volumes_out(scene, tmp_path):
-    volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values()))
-    add_mesh(scene, "Quad")
-    assert len(export(scene).instances) == 2
-    scene.view_layers[0].use_volumes = False
-    (instance,) = export(scene).instances
-    assert instance.object_name == "Quad"
 
 
 @pytest.mark.parametrize("blurs", [True, False])
@@ -180,7 +171,20 @@ def test_an_even_cloud(renderer, lit, tmp_path, space, thickness):
 def test_a_view_layer_may_have_no_volumes(scene, tmp_path):
     """As in Cycles, fog in meshes stays."""
     volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values()))
-    add_mesh(scene, material=smoke_material())
+    add_mesh(scene, "Quad", material=smoke_material())
     assert len(export(scene).instances) == 2
     scene.view_layers[0].use_volumes = False
-    assert len(export(scene).instances) == 1
+    (instance,) = export(scene).instances
+    assert instance.object_name == "Quad"
+
+
+@pytest.mark.parametrize("use_volumes", [True, False])
+def test_a_domain_of_gas_may_multiply_meshes(scene, use_volumes):
+    """They are no gas, whatever the view layer has."""
+    host = add_mesh(scene, "Host")
+    multiply_cubes(host, [((0.0, 0.0, 1.0), 0.1), ((0.0, 0.0, 2.0), 0.2)])
+    domain = host.modifiers.new("Smoke", "FLUID")
+    domain.fluid_type, domain.show_viewport, domain.show_render = "DOMAIN", False, False
+    domain.domain_settings.domain_type = "GAS"
+    scene.view_layers[0].use_volumes = use_volumes
+    assert len(export(scene).instances) == 2
