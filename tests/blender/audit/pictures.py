@@ -1,27 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of the current scene by Cycles, to be compared bit for bit."""
+"""Pictures of the current scene by Cycles, to be compared."""
 
 from pathlib import Path
 
 import bpy
 import numpy as np
-import OpenEXR
+from exr import read_channels, write_exr
 
 
 def cycles_picture(folder: Path) -> dict[str, np.ndarray]:
     """Return Cycles' picture of a few samples with all of its passes, by the names of their channels."""
     scene = bpy.context.scene
     render, cycles = scene.render, scene.cycles
-    render.engine, render.filepath = "CYCLES", str(folder / "cycles.exr")
+    render.engine = "CYCLES"
+    write_exr(scene, folder / "cycles.exr")
     cycles.use_denoising = cycles.use_adaptive_sampling = False
-    render.image_settings.media_type = "MULTI_LAYER_IMAGE"
-    render.image_settings.color_depth = "32"
     try:
         bpy.ops.render.render(write_still=True)
     finally:
         render.engine = "RPPM"
-    with OpenEXR.File(render.filepath, separate_channels=True) as file:
-        channels = {name: channel.pixels for part in file.parts for name, channel in part.channels.items()}
+    channels, _ = read_channels(render.filepath)
     return {name: pixels for name, pixels in channels.items() if "Render Time" not in name}
 
 

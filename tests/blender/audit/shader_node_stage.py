@@ -31,7 +31,7 @@ def shown_node(scene: bpy.types.Scene, kind: str) -> bpy.types.Node | None:
         return None
     if hasattr(node, "image"):
         node.image = new_image("Picture", np.random.default_rng(0).random((8, 8, 4)))
-    target = tree.nodes["Output"].inputs["Volume" if "Volume" in kind or "VolumePrincipled" in kind else "Surface"]
+    target = tree.nodes["Output"].inputs["Volume" if "Volume" in kind else "Surface"]
     for output in node.outputs:
         shader = output if output.type == "SHADER" else add_node(tree, "ShaderNodeEmission", Color=output).outputs[0]
         if target.is_linked:
