@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ....scene.common.whole_files import is_no_file
-from ....scene.common.working_space import REC709
+from ....scene.common.working_space import REC709, WorkingSpace
 from ....scene.images import Image, encode_srgb
 from ..common.slices import Slices
 from .color_spaces import WHITE_IN_CYCLES, scene_linear, working_space
@@ -265,7 +265,7 @@ def _read_at_once(image: bpy.types.Image, look: "_Look") -> Image | None:
 
 @dataclass(frozen=True)
 class _Look:
-    """Properties of a Blender image other than its pixels."""
+    """Properties of a Blender image other than its pixels, so that threads need not ask Blender."""
 
     name: str
     space: str
@@ -273,12 +273,14 @@ class _Look:
     is_float: bool
     is_associated: bool
     is_in_file: bool
+    working: WorkingSpace
+    """Space of the scene's colors."""
 
     @classmethod
     def of(cls, image: bpy.types.Image) -> "_Look":
         """Return the properties of an image."""
         space, in_file = image.colorspace_settings.name, image.source != "GENERATED" and image.packed_file is None
-        return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file)
+        return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file, working_space())
 
     @property
     def times_alpha(self) -> int:
@@ -293,14 +295,17 @@ class _Look:
     @property
     def is_linear(self) -> bool:
         """True where the file has linear colors of the working space, or data."""
-        space = working_space()
-        return self.space in {*_DATA, space.name} or (space is REC709 and self.space == "Linear")
+        return self.space in {*_DATA, self.working.name} or (self.working is REC709 and self.space == "Linear")
+
+    @property
+    def is_srgb(self) -> bool:
+        """True where the renderer decodes the colors, which are those of Rec.709 by the curve of sRGB."""
+        return self.space == "sRGB" and self.working is REC709
 
     @property
     def needs_blender(self) -> bool:
         """Whether Blender is asked to convert its colors."""
-        is_decoded = self.space == "sRGB" and working_space() is REC709
-        return not (self.is_float or self.is_linear or is_decoded)
+        return not (self.is_float or self.is_linear or self.is_srgb)
 
 
 def _encoded(look: _Look, pixels: np.ndarray) -> Image:
@@ -311,10 +316,9 @@ def _encoded(look: _Look, pixels: np.ndarray) -> Image:
     if look.is_float:
         # Blender has made them linear.
         pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
-        is_encoded = space == "sRGB" and working_space() is REC709
-        if is_encoded:
+        if look.is_srgb:
             pixels[..., :3] = encode_srgb(pixels[..., :3])
-        return Image(look.name, pixels, "SRGB" if is_encoded else "LINEAR")
+        return Image(look.name, pixels, "SRGB" if look.is_srgb else "LINEAR")
     if look.needs_blender:
         encoded = pixels[..., :3]
         if look.times_alpha == 2:
@@ -322,7 +326,7 @@ def _encoded(look: _Look, pixels: np.ndarray) -> Image:
         linear = scene_linear(encoded, space) * WHITE_IN_CYCLES.get(space, 1.0)
         pixels[..., :3] = linear * pixels[..., 3:] if look.times_alpha else linear
         return Image(look.name, pixels, "LINEAR")
-    encoding = "SRGB" if space == "sRGB" else "LINEAR"
+    encoding = "SRGB" if look.is_srgb else "LINEAR"
     pixels = _bytes(pixels)
     if look.is_associated and pixels[..., 3].min() < 255:
         colors = _times_alpha(pixels) if look.times_alpha == 2 else pixels[..., :3].astype(np.uint16)
