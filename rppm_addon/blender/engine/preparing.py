@@ -14,6 +14,7 @@ from ..export import export_settings
 from ..export.common.report import Report
 from ..export.context import ExportContext
 from ..export.geometry.strands.round_meshes import ROUND_TYPES
+from ..export.images.color_spaces import working_space
 from ..export.images.images import MISSING, ImageTable
 from ..export.shading.nodes.materials import export_material
 from ..render_client import renderer_process
@@ -70,7 +71,9 @@ class _Preparing:
             return True
         settings = export_settings(bpy.context.scene, bpy.context.view_layer, viewport=True)
         camera = Camera(np.eye(4), _WINDOW, _RESOLUTION, _RESOLUTION)
-        renderer_process.renderer_process().prepare(Scene(camera, materials=self._materials, settings=settings))
+        space = working_space().name
+        scene = Scene(camera, materials=self._materials, settings=settings, working_space=space)
+        renderer_process.renderer_process().prepare(scene)
         return False
 
 

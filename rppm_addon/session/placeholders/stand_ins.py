@@ -38,6 +38,7 @@ class StandIns:
 
     def replace(self, scene: Scene) -> Scene:
         """Return the scene with stand-ins for materials whose programs are compiled in the background from now on."""
+        self._library.graph_defines = scene.color_space.defines
         self._programs = {id(material): (material, self._programs_of(material)) for material in scene.materials}
         self._made = {key: made for key, made in self._made.items() if key in self._programs}
         programs = dict.fromkeys(program for _, own in self._programs.values() for program in own)

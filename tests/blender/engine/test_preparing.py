@@ -52,6 +52,14 @@ def test_the_programs_are_those_of_an_export_and_images_are_not_read(lit, prepar
     assert (scene.settings.direct_light, scene.warnings) == (exported.settings.direct_light, [])
 
 
+@pytest.mark.skipif(not hasattr(bpy.data, "colorspace"), reason="before Blender 5.0 all files have one working space")
+def test_programs_are_of_the_working_space(lit, prepared, timers):
+    bpy.ops.wm.set_working_color_space(working_space="ACEScg")
+    timers.run_out()
+    (scene,) = prepared.scenes
+    assert scene.working_space == export(lit).working_space == "ACEScg"
+
+
 def add_curves(scene):
     data = bpy.data.hair_curves.new("Curves")
     data.add_curves([2])

@@ -17,6 +17,7 @@ from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.stage_set import StageSet
 from rppm_addon.integrator.viewport.pictures import demands_of
 from rppm_addon.scene import Material, NodeGraph
+from rppm_addon.scene.common.working_space import ACESCG, REC709
 from rppm_addon.session.placeholders.known_programs import KnownPrograms, programs_of
 from rppm_addon.session.placeholders.stand_ins import StandIns
 from rppm_addon.session.worker.preparation import Preparation
@@ -106,8 +107,9 @@ def library(device, submitted):
 
 
 @pytest.mark.parametrize("feature", FEATURES)
-def test_a_picture_asks_for_nothing_that_was_not_prepared(library, submitted, feature):
-    sent, scene = [], with_material(feature)
+@pytest.mark.parametrize("space", [REC709, ACESCG], ids=lambda space: space.name)
+def test_a_picture_asks_for_nothing_that_was_not_prepared(library, submitted, feature, space):
+    sent, scene = [], dataclasses.replace(with_material(feature), working_space=space.name)
     preparation = Preparation(library.context, library, lambda kind, **_: sent.append(kind))
     preparation.show(dataclasses.replace(scene, meshes=[], instances=[], lights=[]), 1, False)
     run_to_the_end(preparation)
@@ -117,6 +119,14 @@ def test_a_picture_asks_for_nothing_that_was_not_prepared(library, submitted, fe
     for material in scene.materials:
         assert all(program.has_stand_in(library) for program in programs_of(material))
     assert (library.made, submitted) == before
+
+
+def test_stand_ins_wait_for_programs_of_the_working_space(library, submitted):
+    scene = dataclasses.replace(with_material(wax), working_space=ACESCG.name)
+    StandIns(library).replace(scene)
+    before = set(submitted)
+    StandIns(library).replace(dataclasses.replace(scene, working_space=REC709.name))
+    assert before and len(submitted) == 2 * len(before)
 
 
 def test_what_a_driver_refuses_is_left_to_whoever_renders(library, monkeypatch):
