@@ -29,7 +29,7 @@ UNSEEN = frozenset(
 )
 """Settings that say when a render ends or is shown or by which way it comes to its picture, and nothing of what an
 iteration finds."""
-AFTER_FILM = frozenset({"denoising_prefilter", "denoising_quality"})
+AFTER_FILM = frozenset({"denoising_prefilter", "denoising_quality", "denoising_use_gpu"})
 """Settings that say what becomes of a picture once all iterations are in it."""
 _NOT_RENDERED = frozenset({"settings", "stamps", "warnings", "instance_arrays"})
 

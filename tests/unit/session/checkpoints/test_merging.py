@@ -63,6 +63,12 @@ def test_parts_of_another_still(part, values, what):
         merge_parts([part(0, 5), part(5, 9, **values)], incomplete=False)
 
 
+def test_parts_that_are_to_be_denoised_otherwise_fit_together(part):
+    other = {"denoising_prefilter": "FAST", "denoising_quality": "FAST", "denoising_use_gpu": True}
+    merged = merge_parts([part(0, 5), part(5, 9, settings=still_render().settings | other)], incomplete=False)
+    assert merged.iterations == 9
+
+
 def test_pictures_have_the_place_of_the_parts(part, tmp_path):
     merged = merge_parts([part(0, 5)], incomplete=False)
     assert merged.render.placement == Placement(16, 10, 3, 2)
