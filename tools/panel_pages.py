@@ -246,7 +246,7 @@ def _default(shown: Shown) -> str:
     if declared.type == "BOOLEAN":
         return "" if declared.is_array else f"default {'on' if declared.default else 'off'}"
     if declared.type in {"INT", "FLOAT"} and not declared.is_array:
-        if name in MEANINGS and declared.default == 0:
+        if MEANINGS.get(name) and declared.default == 0:
             return f"default {MEANINGS[name].lower()} (0)"
         return f"default {declared.default:g}"
     if declared.type == "ENUM" and declared.default in declared.enum_items:

@@ -66,7 +66,7 @@ class Stopwatch:
 
 
 class Device:
-    """Takes scenes as the renderer does; the deep cubemap is built of the first only."""
+    """Takes scenes as the renderer does; the acceleration structure is built of the first only."""
 
     def __init__(self) -> None:
         self.context = Context.create()
@@ -97,7 +97,7 @@ class Device:
             self._mapper.update(scene.expanded())
             self.context.finish()
         whole = np.array([time.perf_counter(), time.process_time()]) - started
-        self._mapper.device_scene._build_deep_cubemap = lambda: None
+        self._mapper.device_scene._build_acceleration = lambda *_: None
         gather = spent[geometry._gather]
         upload = spent[geometry] + spent[resolve] - gather
         for name, seconds in (("gather", gather), ("upload", upload), ("others", whole - upload - gather)):

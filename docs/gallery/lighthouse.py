@@ -72,7 +72,7 @@ def build(scene):
     color_world(scene, (0.10, 0.19, 0.36), 0.3)
     camera((0.6, -7.0, 0.8), (0.15, 0.0, 2.05), 31.0)
     set_up(scene, 640, 360, exposure=0.8)
-    set_volume_bounces(scene, 0, cycles=1)
+    set_volume_bounces(scene, rppm=0, cycles=1)
 
 
 if __name__ == "__main__":

@@ -4,15 +4,12 @@
 import bpy
 
 
-def scattering(name, color, density, anisotropy=0.0, surface=None):
-    """A medium that scatters, of so many collisions a meter; surface: the material it is behind, or none."""
-    made = surface or bpy.data.materials.new(name)
+def scattering(name, color, density, anisotropy=0.0):
+    """A medium that scatters, of so many collisions a meter."""
+    made = bpy.data.materials.new(name)
     tree = made.node_tree
-    if surface is None:
-        tree.nodes.clear()
-        tree.nodes.new("ShaderNodeOutputMaterial")
-    output = next(node for node in tree.nodes if node.type == "OUTPUT_MATERIAL")
-    volume = tree.nodes.new("ShaderNodeVolumeScatter")
+    tree.nodes.clear()
+    output, volume = tree.nodes.new("ShaderNodeOutputMaterial"), tree.nodes.new("ShaderNodeVolumeScatter")
     volume.inputs["Color"].default_value = (*color, 1)
     volume.inputs["Density"].default_value, volume.inputs["Anisotropy"].default_value = density, anisotropy
     tree.links.new(volume.outputs[0], output.inputs["Volume"])
@@ -31,7 +28,6 @@ def absorbing(medium, color, density):
     return medium
 
 
-def set_volume_bounces(scene, bounces, cycles=None):
-    """As many in both engines; cycles: another number for Cycles."""
-    scene.rppm.volume_bounces = bounces
-    scene.cycles.volume_bounces = bounces if cycles is None else cycles
+def set_volume_bounces(scene, rppm, cycles):
+    """Volume Bounces of each engine."""
+    scene.rppm.volume_bounces, scene.cycles.volume_bounces = rppm, cycles

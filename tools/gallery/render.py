@@ -13,6 +13,7 @@ import argparse
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -46,8 +47,8 @@ FRAMES = {"aquarium": 1, "disco_ball": 12}
 FILM_FRAMES, FILM_SIZE, FILM_SPEED = "1..48..4", (320, 180), 6
 """Which are rendered, how large, and how many are shown a second."""
 SHARED = (SCRIPTS / "stage.py", SAMPLES / "sample_scene.py", SAMPLES / "pool.py")
-VOLUMES = SCRIPTS / "volumes.py"
-"""The script that scenes with volumes share besides."""
+_IMPORT = re.compile(r"^from (\w+) import", re.MULTILINE)
+"""Pattern of the modules that a script imports from; those beside it are a part of what makes its scene."""
 
 
 def call(*command: object, label: str) -> str:
@@ -69,7 +70,8 @@ def last_json(text: str) -> dict:
 def script_digest(name: str) -> str:
     """Return the digest of all files that make a scene."""
     script = SCRIPTS / f"{name}.py"
-    files = (script, *SHARED, *([VOLUMES] if "from volumes import" in script.read_text(encoding="utf-8") else ()))
+    imported = [SCRIPTS / f"{module}.py" for module in _IMPORT.findall(script.read_text(encoding="utf-8"))]
+    files = (script, *SHARED, *(file for file in imported if file.exists() and file not in SHARED))
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in files)).hexdigest()[:16]
 
 

@@ -350,8 +350,8 @@ def compile_graph(
 ) -> CompiledGraph:
     """The GLSL of a graph's structure, and its constants; ``aovs``: the passes of AOV Output nodes that are rendered;
     ``abbe_number``: by which its glass disperses light, None where it does not; ``on_round_shapes``: whether it is on
-    strands or points; ``corrects_bump``: as Material has it; ``traces_rays``:
-    whether nodes may, which those of worlds and lights do not; ``space``: of its colors.
+    strands or points; ``corrects_bump``: as Material has it; ``traces_rays``: whether nodes may, which those of worlds
+    and lights do not; ``space``: of its colors.
 
     Raises GraphError when nodes, options or links are unknown.
     """

@@ -106,7 +106,6 @@ UNNAMED = (
         "Light groups of objects that share a material whose volume emits light",
         "what camera rays and final gathers find of it counts for the group of one of them",
     ),
-    ("Light of a volume that more than one diffuse surface scatters", "left out"),
     (
         "Volume Scatter, in the Ray Visibility of what neither emits light nor is the world",
         "volumes see it as other surfaces do",

@@ -133,63 +133,56 @@ def test_images_that_are_copied_to_the_device_are_denoised_alike(library, place,
     np.testing.assert_allclose(found, expected, rtol=1e-5)
 
 
-class FakeGpu:
+class FakeLibrary:
+    """Stands in for the file of a version, and notes the quality that is asked for."""
+
+    def __init__(self, version):
+        self.functions, self.qualities = {}, []
+        self.results = {"oidnGetDeviceInt": lambda *_: version, "oidnSetFilterInt": self.set_quality}
+
+    def set_quality(self, filter_, name, value):
+        self.qualities.append(value)
+
+    def __getattr__(self, name):
+        answer = self.results.get(name, lambda *_: 0)
+        return self.functions.setdefault(name, lambda *given: answer(*given))
+
+
+class FakeGpu(FakeLibrary):
     """A library that knows the processor and a GPU, and fills the pictures of the GPU with a number."""
 
     def __init__(self):
-        self.opened = []
-        self.functions = {}
-        self.buffers = []
+        super().__init__(20303)
+        self.opened, self.buffers = [], []
+        self.results |= {
+            "oidnGetNumPhysicalDevices": lambda: 2,
+            "oidnGetPhysicalDeviceInt": lambda number, name: (1, 3)[number],
+            "oidnGetPhysicalDeviceString": lambda number, name: (b"A processor", b"A card")[number],
+            "oidnNewDeviceByID": self.open_device,
+            "oidnNewBuffer": self.add_buffer,
+            "oidnReleaseBuffer": self.release_buffer,
+            "oidnReadBuffer": self.fill,
+        }
 
-    def oidnGetNumPhysicalDevices(self):
-        return 2
-
-    def oidnGetPhysicalDeviceInt(self, number, name):
-        return (1, 3)[number]
-
-    def oidnGetPhysicalDeviceString(self, number, name):
-        return (b"A processor", b"A card")[number]
-
-    def oidnNewDeviceByID(self, number):
+    def open_device(self, number):
         self.opened.append(number)
         return 7
 
-    def oidnGetDeviceInt(self, device, name):
-        return 20303
-
-    def oidnNewBuffer(self, device, size):
+    def add_buffer(self, device, size):
         self.buffers.append(size)
         return len(self.buffers)
 
-    def oidnReleaseBuffer(self, buffer):
+    def release_buffer(self, buffer):
         self.buffers[buffer - 1] = None
 
-    def oidnReadBuffer(self, buffer, offset, size, address):
+    def fill(self, buffer, offset, size, address):
         np.ctypeslib.as_array((ctypes.c_float * (size // 4)).from_address(address))[:] = 0.25
-
-    def __getattr__(self, name):
-        if not name.startswith("oidn"):
-            raise AttributeError(name)
-        return self.functions.setdefault(name, Callable(lambda *_: 0))
-
-
-class Callable:
-    """A function of FakeGpu that takes declarations of types."""
-
-    def __init__(self, function):
-        self.function = function
-
-    def __call__(self, *given):
-        return self.function(*given)
 
 
 @pytest.fixture
 def fake_gpu(monkeypatch, tmp_path):
     """Stands for all files of libraries, of which there is library.so."""
     fake = FakeGpu()
-    for name in dir(FakeGpu):
-        if name.startswith("oidn"):
-            setattr(fake, name, Callable(getattr(fake, name)))
     (tmp_path / "library.so").touch()
     monkeypatch.setattr(ctypes, "CDLL", lambda path: fake)
     return fake
@@ -220,21 +213,6 @@ def test_without_a_gpu_the_processor_denoises(place, noisy):
     picture = np.concatenate([noisy, np.ones_like(noisy[..., :1])], axis=-1)
     denoised = Denoiser([place]).denoise(picture, {}, settings)
     assert denoised[..., :3].std() < noisy.std()
-
-
-class FakeLibrary:
-    """Stands in for the file of a version, and notes the quality that is asked for."""
-
-    def __init__(self, version):
-        self.functions, self.qualities = {}, []
-        self.results = {"oidnGetDeviceInt": lambda *_: version, "oidnSetFilterInt": self.set_quality}
-
-    def set_quality(self, filter_, name, value):
-        self.qualities.append(value)
-
-    def __getattr__(self, name):
-        answer = self.results.get(name, lambda *_: 0)
-        return self.functions.setdefault(name, lambda *given: answer(*given))
 
 
 @pytest.fixture
