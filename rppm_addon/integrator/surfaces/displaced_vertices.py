@@ -14,8 +14,9 @@ from ...gl.programs.sources import CompileError
 from ...materials.tables import MaterialTables, first_line
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
 from ...scene.scene import Scene
+from ..common.affine import mirrored
 from .geometry import Geometry, Placement
-from .surface_attributes import SurfaceAttributes, mirrored
+from .surface_attributes import SurfaceAttributes
 
 DISPLACED_VERTEX = Record(
     "DisplacedVertex",

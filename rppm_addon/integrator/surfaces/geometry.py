@@ -22,6 +22,7 @@ from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ..acceleration.instances import HitPaths, InstancedMeshes, WorldPlacements
 from ..common.active_paths import ActivePaths
+from ..common.affine import affine_inverses
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
@@ -108,16 +109,6 @@ def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     nearest = np.clip(affine_inverses(matrices)[:, :, 3], boxes[:, 0], boxes[:, 1])
     reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), np.abs(boxes).max(axis=1)).max(axis=1)
     return np.where(reach[:, None] > _FAR_VERTICES, nearest, 0.0).astype(np.float32)
-
-
-def affine_inverses(matrices: np.ndarray) -> np.ndarray:
-    """(n, 3, 4) upper rows, of affine (n, 4, 4); all 0 where there is no inverse, as for an instance without extent."""
-    # Written out: thousands of small matrices take NumPy long.
-    x, y, z, origin = (matrices[:, :3, column] for column in range(4))
-    linear = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
-    determinant = (x * linear[:, 0]).sum(axis=1)
-    linear *= np.divide(1.0, determinant, out=np.zeros_like(determinant), where=determinant != 0.0)[:, None, None]
-    return np.concatenate([linear, -np.einsum("nij,nj->ni", linear, origin)[:, :, None]], axis=2)
 
 
 @dataclass(slots=True)
