@@ -20,9 +20,9 @@ from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..acceleration.instances import HitPaths, InstancedMeshes, WorldPlacements
+from ..acceleration.instances import HitPaths, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
-from ..common.affine import affine_inverses
+from ..common.affine import affine_inverses, determinants
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
@@ -144,8 +144,8 @@ class Geometry(BufferSet):
         """Instances that are not expanded, which rays place in the world; None where there are none."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
-        self._world: WorldPlacements | None = None
-        """Sources of the world triangles."""
+        self._world: TriangleSources | None = None
+        """Sources of the world triangles; None where these are not gathered."""
         self.triangle_count = 0
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
@@ -197,7 +197,7 @@ class Geometry(BufferSet):
             self.matrices[number] = inset_matrix(self.matrices[number], box, number)
         is_expanded = np.ones(len(chosen), bool)
         if is_instanced is not None:  # rays go on in object space, which flat ones do not have
-            is_expanded = ~(is_instanced[chosen] & affine_inverses(self.matrices).any(axis=(1, 2)))
+            is_expanded = ~(is_instanced[chosen] & (determinants(self.matrices) != 0.0))
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which] * is_expanded
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
@@ -228,12 +228,15 @@ class Geometry(BufferSet):
         placed_meshes = [meshes[index] for index in which[expanded].tolist()]
         # As bytes: copies of records leave the padding between members undefined.
         placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
-        before, self._world = self._world, WorldPlacements(placed_meshes, expanded, placed_by, slots_uploaded)
+        before, self._world = self._world, None  # should gathering fail
+        world = TriangleSources(placed_meshes, expanded, placed_by, slots_uploaded)
         first_materials = slots_uploaded[entries["first_slot"]]
-        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials)
-        if self._require_triangles(instances, lengths) or before != self._world:
+        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials, world)
+        is_new = self._require_triangles(instances, lengths)
+        if is_new or world != before:
             self._gather_triangles(len(instances))
-        self._objects.gather(self._inputs.blocks, self.triangles)
+        self._objects.gather(self._inputs.blocks, self.triangles, is_new)
+        self._world = world
 
     def _gather_triangles(self, instance_count: int) -> None:
         """Gather the triangles of all that is expanded."""
@@ -260,6 +263,7 @@ class Geometry(BufferSet):
         placements: np.ndarray,
         entries: np.ndarray,
         first_materials: np.ndarray,
+        world: TriangleSources,
     ) -> None:
         """Have places behind the world triangles for what instances need that are not expanded. ``which``: the mesh of
         each placement, ``placements``: the numbers of those instances; ``first_materials``: (n,) the material of each
@@ -282,7 +286,7 @@ class Geometry(BufferSet):
             entries[placements],
             first_materials[placements],
             self.boxes[placements],
-            require(self._world),
+            world,
             self._hits.first,
             self._hits.count,
             self._hits.origins.buffer,

@@ -15,7 +15,7 @@ from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_members
-from ..common.affine import affine_inverses, mirrored
+from ..common.affine import affine_inverses, determinants
 from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry
 
@@ -97,7 +97,8 @@ class SurfaceAttributes(BufferSet):
             _fill(records, instances, geometry.matrices, scene.meshes)
             self.has_terminators = any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
         self._instances.upload(records)
-        self._upload_values(scene.meshes, instances, mirrored(geometry.matrices).tolist() if names else [], names)
+        turned = (determinants(geometry.matrices) < 0.0).tolist() if names else []
+        self._upload_values(scene.meshes, instances, turned, names)
 
     def _upload_values(
         self, meshes: list[Mesh], instances: list[Instance], turned: list[bool], names: list[str]
