@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers.buffers import RANGE_ITEMS
+from ...gl.buffers.buffers import next_range
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
@@ -269,11 +269,11 @@ class Geometry(BufferSet):
         each placement, ``placements``: the numbers of those instances; ``first_materials``: (n,) the material of each
         placement's first slot."""
         self.instanced = None
-        first = _next_range(self.triangle_count)
+        first = next_range(self.triangle_count)
         self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
         used, one, mesh_of = np.unique(which[placements], return_index=True, return_inverse=True)
         shared = [meshes[index] for index in used]
-        self._objects.place(_next_range(first + self._hits.count), shared, entries[placements[one]])
+        self._objects.place(next_range(first + self._hits.count), shared, entries[placements[one]])
         if not len(placements):
             return
         self.instanced = InstancedMeshes(
@@ -342,11 +342,6 @@ class Geometry(BufferSet):
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
-
-
-def _next_range(item: int) -> int:
-    """First item from one on where a range may begin."""
-    return -(-item // RANGE_ITEMS) * RANGE_ITEMS
 
 
 def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> str:
