@@ -5,11 +5,8 @@
 // other one on a stack. Which one comes first changes no hit, only how soon a hit is found.
 #include "acceleration/one_level.glsl"
 #include "acceleration/ray_test.glsl"
-#include "bvh/boxes.glsl"
+#include "bvh/nodes.glsl"
 #include "common/finite.glsl"
-#include <BvhNodes>
-
-restrict readonly buffer BvhNodes;
 
 Hit trace_ray(Ray ray, bool any_hit) {
     Hit best = Hit(NO_TRIANGLE, 0.0, 0.0, min(ray.maximum_distance, INFINITY_DISTANCE));
@@ -32,13 +29,10 @@ Hit trace_ray(Ray ray, bool any_hit) {
             is_at_end = true;
         } else {
             BvhNode node = bvh_nodes[child];
-            float enter0, enter1;
-            bool meets0 = meets_box(slabs, node.low0, node.high0, best.distance, enter0);
-            bool meets1 = meets_box(slabs, node.low1, node.high1, best.distance, enter1);
-            bool is_second_first = meets1 && (!meets0 || enter1 < enter0);
-            child = is_second_first ? node.child1 : node.child0;
-            if (meets0 && meets1) stack[top++] = is_second_first ? node.child0 : node.child1;
-            is_at_end = !(meets0 || meets1);
+            MetChildren met = met_children(node, slabs, best.distance);
+            child = met.nearer;
+            if (met.both) stack[top++] = met.farther;
+            is_at_end = !met.any;
         }
         if (is_at_end) {
             if (top == 0) break;

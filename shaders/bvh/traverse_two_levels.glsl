@@ -5,12 +5,9 @@
 // In a mesh's hierarchy the ray goes on in object space, where its direction keeps its scale: distances are those of
 // the world. Its triangles are tested in the world, so that hits are the same as those of triangles that lie there.
 #include "acceleration/instance_test.glsl"
-#include "bvh/boxes.glsl"
+#include "bvh/nodes.glsl"
 #include "common/finite.glsl"
-#include <BvhNodes>
 #include <InstanceLeaf>
-
-restrict readonly buffer BvhNodes;
 
 // Stands on the stack below what is left of a mesh's hierarchy.
 const uint TO_TOP_LEVEL = 0xffffffffu;
@@ -42,13 +39,10 @@ Hit trace_ray(Ray ray, bool any_hit) {
             number = IN_WORLD;
         } else if ((child & LEAF) == 0u) {
             BvhNode node = bvh_nodes[child];
-            float enter0, enter1;
-            bool meets0 = meets_box(slabs, node.low0, node.high0, best.distance, enter0);
-            bool meets1 = meets_box(slabs, node.low1, node.high1, best.distance, enter1);
-            bool is_second_first = meets1 && (!meets0 || enter1 < enter0);
-            child = is_second_first ? node.child1 : node.child0;
-            if (meets0 && meets1) stack[top++] = is_second_first ? node.child0 : node.child1;
-            is_at_end = !(meets0 || meets1);
+            MetChildren met = met_children(node, slabs, best.distance);
+            child = met.nearer;
+            if (met.both) stack[top++] = met.farther;
+            is_at_end = !met.any;
         } else if (number == IN_WORLD && (child & 3u) == INSTANCE_LEAF) {
             number = (child & ~LEAF) >> 2;
             instance = bottom_level_instances[number];
@@ -76,12 +70,4 @@ Hit trace_ray(Ray ray, bool any_hit) {
     return best;
 }
 
-// The nearest hit within ray.maximum_distance (which may be it); best.triangle NO_TRIANGLE if none.
-Hit nearest_hit(Ray ray) {
-    Hit best = trace_ray(ray, false);
-    if (is_on_instance(best)) best.triangle = keep_hit(hit_origin(best), ray.source_triangle);
-    return best;
-}
-
-// Whether anything lies within ray.maximum_distance.
-bool is_occluded(Ray ray) { return trace_ray(ray, true).triangle != NO_TRIANGLE; }
+#include "acceleration/instance_queries.glsl"

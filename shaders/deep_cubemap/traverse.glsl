@@ -132,28 +132,17 @@ Hit trace_ray(Ray ray, bool any_hit) {
         return best;
     }
     CubemapWalk walk = CubemapWalk(cubemap, make_ray_test(ray, any_hit), origin);
-    float closest = -dot(origin, ray.direction) / squared_length;
-    vec3 foot = origin + closest * ray.direction;
-    float squared_miss = dot(foot, foot);
-    // All triangles are in the scene's ball; what is left of the ray outside need not be walked.
-    float scene_radius = 1.001 * cubemap.scene_radius + 1e-5 * length(origin);
-    vec2 scene, core;
-    if (!clip_to_ball(closest, squared_miss, squared_length, scene_radius, scene)) return best;
-    float from = max(scene.x, 0.0), to = min(scene.y, best.distance);
-    clip_to_box(cubemap, origin, ray.direction, from, to);
-    if (!(from < to)) return best;
-
-    // Near the center the ray tests the core list, and walks cells only before and after that.
-    bool meets_core =
-        clip_to_ball(closest, squared_miss, squared_length, cubemap.core_radius, core) && core.y > from && core.x < to;
+    RayPart whole;
+    if (!clip_ray(cubemap, origin, ray.direction, best.distance, whole)) return best;
+    float from = whole.from;
     for (int part = 0; part < 2; ++part) {
-        float end = part == 0 && meets_core ? core.x : to;
+        float end = part == 0 && whole.meets_core ? whole.core.x : whole.to;
         if (from < end) walk_faces(walk, from, end, best);
-        if (part == 1 || !meets_core || is_done(walk, best, core.x)) break;
+        if (part == 1 || !whole.meets_core || is_done(walk, best, whole.core.x)) break;
         for (uint index = 0u; index < cubemap.core_count; ++index) {
             test_triangle(walk.test, core_triangles[index], best);
         }
-        from = max(from, core.y);
+        from = max(from, whole.core.y);
         if (is_done(walk, best, from)) break;
     }
     return best;

@@ -19,9 +19,7 @@ const int BEFORE_CORE = 0, IN_CORE = 1, BEHIND_CORE = 2;
 struct CubemapWalk {
     DeepCubemapState cubemap;
     vec3 origin, direction;  // from the center
-    float from, to;          // distances of what is left of the ray
-    vec2 core;               // distances between which it tests the core list
-    bool meets_core;
+    RayPart left;            // of the ray
     int part;
     bool has_faces;  // of the part
     FaceParts faces;
@@ -46,20 +44,7 @@ bool begin_walk(DeepCubemapState cubemap, vec3 origin, vec3 direction, float to,
     walk.cubemap = cubemap;
     walk.origin = origin;
     walk.direction = direction;
-    float squared_length = dot(direction, direction), closest = -dot(origin, direction) / squared_length;
-    vec3 foot = origin + closest * direction;
-    float squared_miss = dot(foot, foot);
-    // All triangles are in the cubemap's ball; what is left of the ray outside need not be walked.
-    float radius = 1.001 * cubemap.scene_radius + 1e-5 * length(origin);
-    vec2 ball;
-    if (!clip_to_ball(closest, squared_miss, squared_length, radius, ball)) return false;
-    walk.from = max(ball.x, 0.0);
-    walk.to = min(ball.y, to);
-    clip_to_box(cubemap, origin, direction, walk.from, walk.to);
-    if (!(walk.from < walk.to)) return false;
-    // Near the center the ray tests the core list, and walks cells only before and after that.
-    walk.meets_core = clip_to_ball(closest, squared_miss, squared_length, cubemap.core_radius, walk.core)
-                      && walk.core.y > walk.from && walk.core.x < walk.to;
+    if (!clip_ray(cubemap, origin, direction, to, walk.left)) return false;
     walk.part = BEFORE_CORE;
     walk.has_faces = false;
     walk.is_on_face = false;
@@ -72,7 +57,7 @@ CellItems core_items(CubemapWalk walk) {
     items.place = walk.cubemap.first_core;
     items.end = items.place + walk.cubemap.core_count;
     items.bins_left = 0;
-    items.exit = max(walk.from, walk.core.y);
+    items.exit = max(walk.left.from, walk.left.core.y);
     return items;
 }
 
@@ -106,10 +91,10 @@ CellItems cell_items(CubemapWalk walk, CellView view) {
 // On to the next face, or to the next part of the ray. Returns false where there is none before a distance.
 bool next_face(inout CubemapWalk walk, float nearest) {
     if (!walk.has_faces) {
-        float end = walk.part == BEFORE_CORE && walk.meets_core ? walk.core.x : walk.to;
-        walk.faces = clip_to_faces(walk.origin, walk.direction, walk.from, end);
+        float end = walk.part == BEFORE_CORE && walk.left.meets_core ? walk.left.core.x : walk.left.to;
+        walk.faces = clip_to_faces(walk.origin, walk.direction, walk.left.from, end);
         walk.has_faces = true;
-        if (!(walk.from < end)) return false;
+        if (!(walk.left.from < end)) return false;
     }
     vec2 part;
     int face = take_next_face(walk.faces, part);
@@ -133,12 +118,12 @@ bool next_items(inout CubemapWalk walk, float nearest, out CellItems items) {
             walk.is_on_face = leave_cell(walk.face, walk.cubemap, view);
             if (view.is_occupied) return true;
         } else if (walk.part == IN_CORE) {
-            walk.from = max(walk.from, walk.core.y);
-            if (nearest <= walk.from) return false;
+            walk.left.from = max(walk.left.from, walk.left.core.y);
+            if (nearest <= walk.left.from) return false;
             walk.part = BEHIND_CORE;
             walk.has_faces = false;
         } else if (!next_face(walk, nearest)) {
-            if (walk.part == BEHIND_CORE || !walk.meets_core || nearest <= walk.core.x) return false;
+            if (walk.part == BEHIND_CORE || !walk.left.meets_core || nearest <= walk.left.core.x) return false;
             walk.part = IN_CORE;
             items = core_items(walk);
             return true;

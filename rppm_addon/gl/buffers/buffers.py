@@ -11,7 +11,7 @@ from ...scene.errors import DeviceError
 from ..context.context import TEXEL_SIZE, Context
 from .texel_buffers import allocated_size, release_textures
 
-RANGE_ITEMS = 256
+_RANGE_ITEMS = 256
 """Alignment of a range in items: items of any size then begin where every device lets a block begin."""
 SMALLEST = 64
 """Bytes that every buffer has at least."""
@@ -29,6 +29,11 @@ def refuse_large_block(context: Context, name: str, size: int, remedy: str, limi
             f"{name} needs {size / 2**20:.0f} MiB but the device {context.information.name} "
             f"allows {limit / 2**20:.0f} MiB in one buffer; {remedy}"
         )
+
+
+def next_range(item: int) -> int:
+    """First item from one on where a range may begin."""
+    return -(-item // _RANGE_ITEMS) * _RANGE_ITEMS
 
 
 @dataclass(frozen=True)
@@ -91,11 +96,11 @@ class GrowingBuffer:
         return self._size
 
     def ranges(self, count: int, first: int = 0) -> list["BufferRange"]:
-        """Split ``count`` items, from a multiple of RANGE_ITEMS on, into parts that a storage block holds and that
+        """Split ``count`` items, from a place that next_range gives on, into parts that a storage block holds and that
         begin where one may."""
         most = self._context.storage_block_limit // self.item_size
         if count > most:
-            most -= most % RANGE_ITEMS
+            most -= most % _RANGE_ITEMS
         return [BufferRange(self, first + part, min(most, count - part)) for part in range(0, count, most)]
 
     @property

@@ -60,17 +60,17 @@ class HitPaths(enum.Enum):
     SUBSURFACE = "subsurface"
 
 
-class WorldPlacements:
-    """All that world triangles and their attributes are made of: equal to others of which the same ones are made."""
+class TriangleSources:
+    """Meshes and places that triangles on the device are made of: equal to others of which the same ones are made."""
 
     def __init__(self, meshes: list[Mesh], *places: np.ndarray) -> None:
-        """meshes: of each expanded instance; places: arrays by which these are placed."""
+        """meshes: of each instance that has triangles; places: arrays by which these are placed."""
         self._arrays = [array for mesh in meshes for array in _arrays_of(mesh)]
         self._places = [array.tobytes() for array in places]
 
     def __eq__(self, other: object) -> bool:
         return (
-            isinstance(other, WorldPlacements)
+            isinstance(other, TriangleSources)
             and same_members(self._arrays, other._arrays)
             and self._places == other._places
         )
@@ -106,7 +106,7 @@ class InstancedMeshes:
     """(n,) uint32, the material of the first slot of each."""
     boxes: np.ndarray
     """(n, 2, 3) float64, low and high corners in the world, meters."""
-    world: WorldPlacements
+    world: TriangleSources
     first_hit_triangle: int
     hit_triangle_count: int
     hit_origins: moderngl.Buffer
@@ -119,3 +119,9 @@ class InstancedMeshes:
     def triangle_count(self) -> int:
         """Triangles of all meshes."""
         return sum(mesh.triangle_count for mesh in self.meshes)
+
+    @property
+    def placed_triangle_count(self) -> int:
+        """Triangles of all instances."""
+        lengths = np.array([mesh.triangle_count for mesh in self.meshes], np.int64)
+        return int(lengths[self.which].sum())

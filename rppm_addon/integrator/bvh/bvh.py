@@ -17,7 +17,7 @@ from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
 from ..acceleration.instance_records import instance_records
-from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, WorldPlacements
+from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, TriangleSources
 from .bottom_levels import BottomLevels, moved_nodes, top_level_nodes
 from .clustering import MAX_DEPTH, NODE
 from .leaves import LEAF, triangle_nodes
@@ -44,7 +44,7 @@ class Bvh(AccelerationStructure):
         self._bottom_levels = BottomLevels()
         self._world_nodes = NODE.zeros(0)
         """Hierarchy of the world triangles beside instances."""
-        self._world: WorldPlacements | None = None
+        self._world: TriangleSources | None = None
         """World triangles that this was built for."""
         self._world_margin = 0.0
 

@@ -10,7 +10,7 @@ from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.instance_records import instance_records
-from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, WorldPlacements
+from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, TriangleSources
 from .arrays import CubemapArrays
 from .bottom_levels import MeshBounds, mesh_parameters
 from .builder import CubemapBuilder
@@ -66,7 +66,7 @@ class CubemapLevels(BufferSet):
         """By key, the cubemaps of meshes and world triangles, in the order of the arrays."""
         self._bounds: dict[int, tuple[np.ndarray, MeshBounds]] = {}
         """By the id of a mesh's positions, these, which keeps the id theirs, and the mesh's bounds."""
-        self._world: WorldPlacements | None = None
+        self._world: TriangleSources | None = None
         self._world_number = 0
         """Number of times that the world triangles were others than before."""
 

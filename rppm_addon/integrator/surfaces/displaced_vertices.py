@@ -14,8 +14,9 @@ from ...gl.programs.sources import CompileError
 from ...materials.tables import MaterialTables, first_line
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
 from ...scene.scene import Scene
+from ..common.affine import determinants
 from .geometry import Geometry, Placement
-from .surface_attributes import SurfaceAttributes, mirrored
+from .surface_attributes import SurfaceAttributes
 
 DISPLACED_VERTEX = Record(
     "DisplacedVertex",
@@ -155,7 +156,7 @@ def _records(mesh: Mesh, placement: Placement, places: np.ndarray, first_constan
     records["normal"] = mesh.corner_normals[corners] if smooth is None else smooth.values[corners, :3]
     records["triangle"] = placement.first_triangle + places // 3
     corner = places % 3
-    (is_turned,) = mirrored(np.asarray(placement.instance.matrix)[None])
-    records["corner"] = (3 - corner) % 3 if is_turned else corner
+    (determinant,) = determinants(np.asarray(placement.instance.matrix)[None])
+    records["corner"] = (3 - corner) % 3 if determinant < 0.0 else corner
     records["first_constant"] = first_constant
     return records

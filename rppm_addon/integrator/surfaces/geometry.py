@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers.buffers import RANGE_ITEMS
+from ...gl.buffers.buffers import next_range
 from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
@@ -20,8 +20,9 @@ from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..acceleration.instances import HitPaths, InstancedMeshes, WorldPlacements
+from ..acceleration.instances import HitPaths, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
+from ..common.affine import affine_inverses, determinants
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
@@ -110,16 +111,6 @@ def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     return np.where(reach[:, None] > _FAR_VERTICES, nearest, 0.0).astype(np.float32)
 
 
-def affine_inverses(matrices: np.ndarray) -> np.ndarray:
-    """(n, 3, 4) upper rows, of affine (n, 4, 4); all 0 where there is no inverse, as for an instance without extent."""
-    # Written out: thousands of small matrices take NumPy long.
-    x, y, z, origin = (matrices[:, :3, column] for column in range(4))
-    linear = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)], axis=1)
-    determinant = (x * linear[:, 0]).sum(axis=1)
-    linear *= np.divide(1.0, determinant, out=np.zeros_like(determinant), where=determinant != 0.0)[:, None, None]
-    return np.concatenate([linear, -np.einsum("nij,nj->ni", linear, origin)[:, :, None]], axis=2)
-
-
 @dataclass(slots=True)
 class Placement:
     """An instance and its first world triangle, which it has where it is expanded to world triangles."""
@@ -153,8 +144,8 @@ class Geometry(BufferSet):
         """Instances that are not expanded, which rays place in the world; None where there are none."""
         self._bounds: dict[int, tuple[np.ndarray, tuple[np.ndarray, np.ndarray] | None]] = {}
         """By the id of the meshes' positions, these, which keeps the id theirs, and their bounds."""
-        self._world: WorldPlacements | None = None
-        """Sources of the world triangles."""
+        self._world: TriangleSources | None = None
+        """Sources of the world triangles; None where these are not gathered."""
         self.triangle_count = 0
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
@@ -206,7 +197,7 @@ class Geometry(BufferSet):
             self.matrices[number] = inset_matrix(self.matrices[number], box, number)
         is_expanded = np.ones(len(chosen), bool)
         if is_instanced is not None:  # rays go on in object space, which flat ones do not have
-            is_expanded = ~(is_instanced[chosen] & affine_inverses(self.matrices).any(axis=(1, 2)))
+            is_expanded = ~(is_instanced[chosen] & (determinants(self.matrices) != 0.0))
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which] * is_expanded
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
@@ -237,12 +228,15 @@ class Geometry(BufferSet):
         placed_meshes = [meshes[index] for index in which[expanded].tolist()]
         # As bytes: copies of records leave the padding between members undefined.
         placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
-        before, self._world = self._world, WorldPlacements(placed_meshes, expanded, placed_by, slots_uploaded)
+        before, self._world = self._world, None  # should gathering fail
+        world = TriangleSources(placed_meshes, expanded, placed_by, slots_uploaded)
         first_materials = slots_uploaded[entries["first_slot"]]
-        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials)
-        if self._require_triangles(instances, lengths) or before != self._world:
+        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials, world)
+        is_new = self._require_triangles(instances, lengths)
+        if is_new or world != before:
             self._gather_triangles(len(instances))
-        self._objects.gather(self._inputs.blocks, self.triangles)
+        self._objects.gather(self._inputs.blocks, self.triangles, is_new)
+        self._world = world
 
     def _gather_triangles(self, instance_count: int) -> None:
         """Gather the triangles of all that is expanded."""
@@ -269,16 +263,17 @@ class Geometry(BufferSet):
         placements: np.ndarray,
         entries: np.ndarray,
         first_materials: np.ndarray,
+        world: TriangleSources,
     ) -> None:
         """Have places behind the world triangles for what instances need that are not expanded. ``which``: the mesh of
         each placement, ``placements``: the numbers of those instances; ``first_materials``: (n,) the material of each
         placement's first slot."""
         self.instanced = None
-        first = _next_range(self.triangle_count)
+        first = next_range(self.triangle_count)
         self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
         used, one, mesh_of = np.unique(which[placements], return_index=True, return_inverse=True)
         shared = [meshes[index] for index in used]
-        self._objects.place(_next_range(first + self._hits.count), shared, entries[placements[one]])
+        self._objects.place(next_range(first + self._hits.count), shared, entries[placements[one]])
         if not len(placements):
             return
         self.instanced = InstancedMeshes(
@@ -291,7 +286,7 @@ class Geometry(BufferSet):
             entries[placements],
             first_materials[placements],
             self.boxes[placements],
-            require(self._world),
+            world,
             self._hits.first,
             self._hits.count,
             self._hits.origins.buffer,
@@ -347,11 +342,6 @@ class Geometry(BufferSet):
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
-
-
-def _next_range(item: int) -> int:
-    """First item from one on where a range may begin."""
-    return -(-item // RANGE_ITEMS) * RANGE_ITEMS
 
 
 def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> str:

@@ -7,7 +7,7 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers.buffers import RANGE_ITEMS, GrowingBuffer
+from ...gl.buffers.buffers import GrowingBuffer, next_range
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
@@ -51,7 +51,7 @@ class HitTriangles(BufferSet):
             return
         for paths, size in _PATHS.items():
             self.first_hits[paths] = self.count
-            self._counts[paths] = -(-2 * size(sizes) // RANGE_ITEMS) * RANGE_ITEMS
+            self._counts[paths] = next_range(2 * size(sizes))
             self.count += self._counts[paths]
         self.origins.require_items(self.count)
 

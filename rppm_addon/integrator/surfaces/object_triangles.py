@@ -11,6 +11,7 @@ from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.meshes import Mesh
+from ..acceleration.instances import TriangleSources
 from .gather_inputs import INSTANCE_ENTRY
 
 
@@ -26,7 +27,10 @@ class ObjectTriangles(BufferSet):
         """First triangle of the meshes, and their number."""
         self.first_triangles = np.zeros(0, np.int64)
         """(meshes,) the first triangle of each mesh."""
-        self._meshes: list[Mesh] = []
+        self._wanted: TriangleSources | None = None
+        """Sources of the triangles that there are places for."""
+        self._gathered: TriangleSources | None = None
+        """Sources of the triangles that are there."""
 
     def place(self, first: int, meshes: list[Mesh], starts: np.ndarray) -> None:
         """Have places for the triangles of meshes from a triangle on. ``starts``: (meshes,) INSTANCE_ENTRY records that
@@ -37,12 +41,19 @@ class ObjectTriangles(BufferSet):
         self.first_triangles = first + ends - lengths
         entries = starts.copy()
         entries["first_triangle"] = ends - lengths
-        self._meshes = meshes
+        self._wanted = TriangleSources(meshes, np.array([first]))
         if len(entries):
             self._entries.upload(entries)
 
-    def gather(self, inputs: Mapping[str, Bindable], triangles: GrowingBuffer) -> None:
-        """Write the triangles, by the inputs of gathering."""
+    def gather(self, inputs: Mapping[str, Bindable], triangles: GrowingBuffer, is_new: bool) -> None:
+        """Write the triangles, by the inputs of gathering, unless those of the same meshes are at the same places.
+        ``is_new``: whether the buffer of triangles is another one than before."""
+        before, self._gathered = self._gathered, None  # should gathering fail
+        if is_new or self._wanted != before:
+            self._write(inputs, triangles)
+        self._gathered = self._wanted
+
+    def _write(self, inputs: Mapping[str, Bindable], triangles: GrowingBuffer) -> None:
         for part in triangles.ranges(self.count, self.first):
             self._gather.run(
                 part.count,
@@ -51,6 +62,6 @@ class ObjectTriangles(BufferSet):
                     "fallback_point": np.zeros(3),
                     "first_triangle": part.first - self.first,
                     "triangle_count": part.count,
-                    "instance_count": len(self._meshes),
+                    "instance_count": len(self.first_triangles),
                 },
             )

@@ -15,8 +15,9 @@ from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_members
+from ..common.affine import affine_inverses, determinants
 from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
-from .geometry import Geometry, affine_inverses
+from .geometry import Geometry
 
 SHADING_INSTANCE = Record(
     "ShadingInstance",
@@ -96,7 +97,8 @@ class SurfaceAttributes(BufferSet):
             _fill(records, instances, geometry.matrices, scene.meshes)
             self.has_terminators = any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
         self._instances.upload(records)
-        self._upload_values(scene.meshes, instances, mirrored(geometry.matrices) if names else [], names)
+        turned = (determinants(geometry.matrices) < 0.0).tolist() if names else []
+        self._upload_values(scene.meshes, instances, turned, names)
 
     def _upload_values(
         self, meshes: list[Mesh], instances: list[Instance], turned: list[bool], names: list[str]
@@ -184,12 +186,6 @@ def _constant(value: tuple[float, ...], mesh: Mesh) -> MeshAttribute:
     """Return an attribute that has the same value on all triangles of a mesh."""
     values = np.tile(np.array(value, np.float32), (mesh.triangle_count, 1))
     return MeshAttribute(AttributeDomain.TRIANGLE, values)
-
-
-def mirrored(matrices: np.ndarray) -> list[bool]:
-    """Whether affine matrices (n, 4, 4) mirror, so that shaders/surfaces/geometry/gather.comp turns triangles round."""
-    x, y, z = (matrices[:, :3, column] for column in range(3))
-    return ((x * np.cross(y, z)).sum(axis=1) < 0.0).tolist()
 
 
 def _per_corner(attribute: MeshAttribute, mesh: Mesh, is_turned: bool) -> np.ndarray:

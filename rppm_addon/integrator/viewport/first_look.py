@@ -19,6 +19,7 @@ from ...scene.errors import DeviceError
 from ...scene.meshes import Instance, RayVisibility
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_members
+from ..acceleration.instances import InstancedMeshes
 from ..common.band import MAX_RASTER_PIXELS
 from ..common.camera_view import CAMERA_VIEW, camera_view
 from ..surfaces.geometry import Geometry
@@ -85,6 +86,8 @@ class FirstLook(BufferSet):
         self._geometry = geometry
         self._displaced, self._centered, self._instanced = displaced, centered, instanced
         self._shown: Scene | None = None
+        self._uploaded: InstancedMeshes | None = None
+        """Instances whose records are on the device."""
         self._blends = False
         """Whether something is neither opaque nor a hole."""
         self._sky = np.zeros(3)
@@ -168,28 +171,33 @@ class FirstLook(BufferSet):
     ) -> None:
         """Draw the instances that are not expanded, unless their triangles are too many."""
         instanced = self._geometry.instanced
-        if instanced is None:
+        if instanced is None or instanced.placed_triangle_count > _MOST_TRIANGLES:
             return
-        lengths = np.array([mesh.triangle_count for mesh in instanced.meshes], np.int64)
-        if lengths[instanced.which].sum() > _MOST_TRIANGLES:
-            return
+        if instanced is not self._uploaded:
+            self._upload_instances(instanced)
         program = self._library.draw("viewport/first_look/instances.vert", "viewport/first_look/first_look.frag")
+        inputs = {**blocks, "DrawnInstances": self._drawn_instances.buffer}
+        counts = np.bincount(instanced.which, minlength=len(instanced.meshes))
+        firsts = np.cumsum(counts) - counts
+        for number, mesh in enumerate(instanced.meshes):
+            of_mesh = {
+                "first_instance": int(firsts[number]),
+                "instance_vertices": 3 * mesh.triangle_count,
+                "first_vertex": 3 * int(instanced.mesh_first_triangles[number]),
+            }
+            vertices = 3 * mesh.triangle_count * int(counts[number])
+            program.draw(framebuffer, vertices, inputs, {**parameters, **of_mesh}, state=state)
+
+    def _upload_instances(self, instanced: InstancedMeshes) -> None:
+        """Have the DRAWN_INSTANCE records of instances, mesh by mesh."""
+        self._uploaded = None  # should it fail
         order = np.argsort(instanced.which, kind="stable")
         records = DRAWN_INSTANCE.zeros(len(order))
         for name in ("row0", "row1", "row2", "pivot"):
             records[name] = instanced.entries[name][order]
         records["material"], records["number"] = instanced.first_materials[order], instanced.placements[order]
         self._drawn_instances.upload(records)
-        counts = np.bincount(instanced.which, minlength=len(lengths))
-        firsts = np.cumsum(counts) - counts
-        for mesh, (length, count, first) in enumerate(zip(lengths.tolist(), counts.tolist(), firsts.tolist())):
-            of_mesh = {
-                "first_instance": first,
-                "instance_vertices": 3 * length,
-                "first_vertex": 3 * int(instanced.mesh_first_triangles[mesh]),
-            }
-            inputs = {**blocks, "DrawnInstances": self._drawn_instances.buffer}
-            program.draw(framebuffer, 3 * length * count, inputs, {**parameters, **of_mesh}, state=state)
+        self._uploaded = instanced
 
     def take(self, scene: Scene) -> Scene:
         """Upload what is not the very object of the scene before; returns the scene to be drawn, which is centered."""
