@@ -43,6 +43,8 @@ _FREE_PATHS, _SCENES = 12.0, 8.0
 many times the scene's diagonal."""
 _BOXES = 6
 """Boxes of the world's medium, from that around the scene to the largest: light from far away seldom comes to it."""
+_FLATTEST = 0.01
+"""Least extent of the innermost of these over its largest: the photons of a flat one would carry no light."""
 _LEAST_FILL = 0.02
 """Least part of its box that a medium is taken to fill, where its mesh has holes or turns inside out."""
 
@@ -97,6 +99,8 @@ class EmissiveMedia(BufferSet):
         """Add the world's medium, a MEDIUM record, where it is the same everywhere. bounds: of the scene, (3,) each."""
         camera = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
         low, high = np.minimum(bounds[0], camera), np.maximum(bounds[1], camera)
+        missing = np.maximum(_FLATTEST * max(float((high - low).max()), 1e-3) - (high - low), 0.0)
+        low, high = low - 0.5 * missing, high + 0.5 * missing
         extinction = float(np.min(world["absorption"] + world["scattering"]))
         margin = min(_FREE_PATHS / max(extinction, 1e-30), _SCENES * float(np.linalg.norm(high - low)))
         frame = np.stack([low - margin, *np.diag(high - low + 2.0 * margin)])

@@ -149,3 +149,11 @@ def test_a_world_that_absorbs_and_shines(renderer):
     scene = fog.scene_of(camera, floor, world=World(volume=volume), photons=16384, iterations=8, max_bounces=32)
     pictures = fog.pictures_of(renderer, scene, seeds=4)
     fog.assert_expected(pictures, EMISSION / 2.0, 0.02, bias=0.02)
+
+
+def test_a_world_around_a_line_scatters_its_light(renderer):
+    """A furnace with nothing in it but the camera, on an axis through the origin. Half of what is seen is scattered."""
+    camera = fog.camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 0.3)
+    world = World(volume=fog.volume(2.0, 2.0, emission=2.0))
+    scene = fog.scene_of(camera, world=world, photons=65536, iterations=4, volume_bounces=64)
+    assert fog.pictures_of(renderer, scene, seeds=2).mean() == pytest.approx(1.0, rel=0.2)
