@@ -16,6 +16,7 @@ from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
 from .emission_cells import EmissionCells
 from .grids import PlacedMedium
+from .places import mesh_box
 from .voxel_evaluation import WORLD
 
 EMISSIVE_MEDIUM = Record(
@@ -87,10 +88,10 @@ class EmissiveMedia(BufferSet):
     def add_even(self, scene: Scene, instance: Instance, number: int, medium: int, emission: np.ndarray) -> None:
         """Add a medium that is the same everywhere in an instance; emission: (3,) W/(m^3 sr)."""
         mesh = scene.meshes[instance.mesh]
-        positions = mesh.positions[np.isfinite(mesh.positions).all(axis=1)].astype(np.float64)
-        if not len(positions):
+        box = mesh_box(mesh)
+        if box is None:
             return
-        low, high = positions.min(axis=0), positions.max(axis=0)
+        low, high = box
         matrix = np.asarray(instance.matrix, np.float64)
         frame = np.stack([matrix[:3, :3] @ low + matrix[:3, 3], *(matrix[:3, :3] * (high - low)).T])
         self._add(_even_medium(number, frame, emission, self._fill(mesh)), medium)
