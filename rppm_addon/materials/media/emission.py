@@ -79,11 +79,13 @@ class EmissiveMedia(BufferSet):
         self._records: list[np.void] = []
         self._parts: list[np.ndarray] = []
         self._fills: dict[int, tuple[Mesh, float]] = {}
-        """Part of its box that a mesh fills, by the mesh's identity."""
+        """Part of its box that a mesh fills, by the mesh's identity, of the meshes since ``clear``."""
+        self._fills_before: dict[int, tuple[Mesh, float]] = {}
 
     def clear(self) -> None:
         """Forget all media."""
         self.listed, self._records, self._parts = [], [], []
+        self._fills_before, self._fills = self._fills, {}
 
     def add_even(self, scene: Scene, instance: Instance, number: int, medium: int, emission: np.ndarray) -> None:
         """Add a medium that is the same everywhere in an instance; emission: (3,) W/(m^3 sr)."""
@@ -141,7 +143,7 @@ class EmissiveMedia(BufferSet):
     def _fill(self, mesh: Mesh) -> float:
         """Part of its box that a closed mesh fills."""
         if id(mesh) not in self._fills:
-            self._fills[id(mesh)] = mesh, _filled_part(mesh)
+            self._fills[id(mesh)] = self._fills_before.get(id(mesh)) or (mesh, _filled_part(mesh))
         return self._fills[id(mesh)][1]
 
 
