@@ -45,7 +45,7 @@ class MediaTables(BufferSet):
         self.world_scatters = False
         """Whether the world's medium scatters light."""
         self.fills_world = False
-        """Whether the world has a medium that is the same everywhere, and weakens light."""
+        """True where the world has a medium that is the same everywhere, and weakens light."""
         self.world_transmittance = (1.0, 1.0, 1.0)
         """Fraction of the light from infinitely far away that the world's medium lets through, by channel: 0 or 1."""
         self.places = MediumPlaces({}, None, 0)
