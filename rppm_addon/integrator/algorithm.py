@@ -26,7 +26,7 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         view = jittered_view(context.scene.camera, context.settings, band, iteration)
         events = stages.events_of(context, iteration, band, radii)
         stages.camera_hits.find(context, importons, view, band)  # DirectCameraHits
-        stages.media.enter_camera_paths(context, importons, iteration)
+        stages.media.enter_camera_paths(context, importons)
         listeners.band_begun(events)
         yield
         for segment in range(context.settings.camera_segments):  # TraceImportons

@@ -27,7 +27,7 @@ class ShaderFeatures:
     has_heterogeneous_media: bool = False
     """Whether any of these varies from place to place, or from object to object."""
     has_emissive_media: bool = False
-    """Whether volumes emit light."""
+    """True where volumes emit light."""
     counts_bounces: bool = False
     """Whether bounces are counted by type."""
     drops_caustics: bool = False
@@ -35,13 +35,13 @@ class ShaderFeatures:
     clamps_light: bool = False
     """Whether light that paths bring has a limit."""
     has_spherical_stereo: bool = False
-    """Whether the camera stands to the side of each direction in which it looks."""
+    """True where the camera stands to the side of each direction in which it looks."""
     has_transparent_glass: bool = False
-    """Whether the film's background shows behind clear glass."""
+    """True where the film's background shows behind clear glass."""
     shows_roughness: bool = False
-    """Whether the pass Roughness is rendered."""
+    """True where the pass Roughness is rendered."""
     filters_glossy: bool = False
-    """Whether blurred bounces blur the lobes that they see."""
+    """True where blurred bounces blur the lobes that they see."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":

@@ -75,7 +75,7 @@ class Environment(BufferSet):
         self.image_width = 0
         """Pixels across the map that would show all of the world's image."""
         self.is_fine = False
-        """Whether what rays see, but for those that gather light, is a map wider than that of the light."""
+        """True where rays, but for those that gather light, see a map wider than that of the light."""
         self._directions = np.zeros(0, np.float32)
         self.has_others = False
         """Whether there is another table of directions behind the world's."""

@@ -124,7 +124,7 @@ class LightList:
 
     @property
     def _is_chosen(self) -> np.ndarray:
-        """(n,) which lights shadow rays go to."""
+        """(n,) bool, true for lights that shadow rays go to."""
         return np.array([record["kind"] != LightShape.MEDIUM for record in self._records])
 
     @property

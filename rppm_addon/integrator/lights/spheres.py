@@ -22,10 +22,8 @@ def holds_surfaces(light: Light, scene: Scene, geometry: Geometry) -> bool:
     is_disk = light.soft_falloff and light.kind in (LightKind.POINT, LightKind.SPOT)
     if not light.radius > 0.0 or not (is_disk or light.kind is LightKind.POINT):
         return False
-    center, radius = np.asarray(light.matrix, np.float64)[:3, 3], light.radius
-    with np.errstate(invalid="ignore"):  # boxes may not be finite
-        met = np.flatnonzero(_distances_to_boxes(center, geometry.boxes[:, 0], geometry.boxes[:, 1]) <= radius)
-    for number in met.tolist():
+    center, radius = _center(light), light.radius
+    for number in _placements_met(light, geometry):
         mesh = scene.meshes[geometry.placements[number].instance.mesh]
         if mesh.triangle_count > _MAX_TRIANGLES or _reaches(mesh, geometry.matrices[number], center, radius):
             return True
@@ -39,10 +37,19 @@ def holds_medium(light: Light, scene: Scene, geometry: Geometry, media: Set[int]
         return False
     if scene.world.volume is not None:
         return True
-    center = np.asarray(light.matrix, np.float64)[:3, 3]
-    with np.errstate(invalid="ignore"):
-        met = np.flatnonzero(_distances_to_boxes(center, geometry.boxes[:, 0], geometry.boxes[:, 1]) <= light.radius)
-    return any(not media.isdisjoint(geometry.placements[number].instance.materials) for number in met.tolist())
+    met = _placements_met(light, geometry) if media else []
+    return any(not media.isdisjoint(geometry.placements[number].instance.materials) for number in met)
+
+
+def _center(light: Light) -> np.ndarray:
+    return np.asarray(light.matrix, np.float64)[:3, 3]
+
+
+def _placements_met(light: Light, geometry: Geometry) -> list[int]:
+    """Numbers of the placements whose boxes reach into the sphere of a light."""
+    with np.errstate(invalid="ignore"):  # boxes may not be finite
+        distances = _distances_to_boxes(_center(light), geometry.boxes[:, 0], geometry.boxes[:, 1])
+    return np.flatnonzero(distances <= light.radius).tolist()
 
 
 def _distances_to_boxes(point: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:

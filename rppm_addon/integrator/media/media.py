@@ -71,7 +71,7 @@ class Media(Stage):
         if self._box_count:
             self._enter(context, photons.active, photons.blocks, "media/enter_photons.comp")
 
-    def enter_camera_paths(self, context: StageContext, importons: Importons, iteration: Iteration) -> None:
+    def enter_camera_paths(self, context: StageContext, importons: Importons) -> None:
         """Have camera paths that have just begun do so in the media around the camera."""
         if self._box_count:
             self._enter(context, importons.active, importons.blocks, "media/enter_camera_paths.comp")

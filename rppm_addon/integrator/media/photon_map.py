@@ -152,7 +152,7 @@ class MediumPhotonMap(Stage):
 
     @property
     def is_lit_by_specular_surfaces(self) -> bool:
-        """Whether much of the light in media has come straight by specular surfaces, so that photons alone bring it."""
+        """True where much of the light in media has come straight by specular surfaces: photons alone bring it."""
         return self._straight_count > _MOST_STRAIGHT * self.photon_count
 
     @property

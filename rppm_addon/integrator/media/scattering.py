@@ -111,7 +111,7 @@ class MediumScattering(Stage):
     ) -> None:
         """Choose which of the camera paths whose hits are resolved are scattered by dense media before they come to
         them. Where media emit light, none are: photons alone bring that light to media."""
-        if not self.is_on:
+        if not (self.is_on and context.materials.media.scatter):
             return
         by_rays = context.gathers and context.settings.direct_light is DirectLight.RAYS
         by_photons = photon_map.is_lit_by_specular_surfaces or self._takes_emission_by_photons
@@ -130,7 +130,7 @@ class MediumScattering(Stage):
 
     def leave_vertices(self, context: StageContext, importons: Importons) -> None:
         """Send on from their vertices in media the camera paths that were scattered there."""
-        if not self.is_on:
+        if not (self.is_on and context.materials.media.scatter):
             return
         with context.timers.stage("camera scattering in media"):
             importons.active.run(self._leave_vertices, {**context.blocks, **importons.blocks, **self.blocks})

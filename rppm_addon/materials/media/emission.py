@@ -16,6 +16,7 @@ from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
 from .emission_cells import EmissionCells
 from .grids import PlacedMedium
+from .places import mesh_box
 from .voxel_evaluation import WORLD
 
 EMISSIVE_MEDIUM = Record(
@@ -43,6 +44,8 @@ _FREE_PATHS, _SCENES = 12.0, 8.0
 many times the scene's diagonal."""
 _BOXES = 6
 """Boxes of the world's medium, from that around the scene to the largest: light from far away seldom comes to it."""
+_FLATTEST = 0.01
+"""Least extent of the innermost of these over its largest: the photons of a flat one would carry no light."""
 _LEAST_FILL = 0.02
 """Least part of its box that a medium is taken to fill, where its mesh has holes or turns inside out."""
 
@@ -76,19 +79,21 @@ class EmissiveMedia(BufferSet):
         self._records: list[np.void] = []
         self._parts: list[np.ndarray] = []
         self._fills: dict[int, tuple[Mesh, float]] = {}
-        """Part of its box that a mesh fills, by the mesh's identity."""
+        """Part of its box that a mesh fills, by the mesh's identity, of the meshes since ``clear``."""
+        self._fills_before: dict[int, tuple[Mesh, float]] = {}
 
     def clear(self) -> None:
         """Forget all media."""
         self.listed, self._records, self._parts = [], [], []
+        self._fills_before, self._fills = self._fills, {}
 
     def add_even(self, scene: Scene, instance: Instance, number: int, medium: int, emission: np.ndarray) -> None:
         """Add a medium that is the same everywhere in an instance; emission: (3,) W/(m^3 sr)."""
         mesh = scene.meshes[instance.mesh]
-        positions = mesh.positions[np.isfinite(mesh.positions).all(axis=1)].astype(np.float64)
-        if not len(positions):
+        box = mesh_box(mesh)
+        if box is None:
             return
-        low, high = positions.min(axis=0), positions.max(axis=0)
+        low, high = box
         matrix = np.asarray(instance.matrix, np.float64)
         frame = np.stack([matrix[:3, :3] @ low + matrix[:3, 3], *(matrix[:3, :3] * (high - low)).T])
         self._add(_even_medium(number, frame, emission, self._fill(mesh)), medium)
@@ -97,6 +102,8 @@ class EmissiveMedia(BufferSet):
         """Add the world's medium, a MEDIUM record, where it is the same everywhere. bounds: of the scene, (3,) each."""
         camera = np.asarray(scene.camera.matrix, np.float64)[:3, 3]
         low, high = np.minimum(bounds[0], camera), np.maximum(bounds[1], camera)
+        missing = np.maximum(_FLATTEST * max(float((high - low).max()), 1e-3) - (high - low), 0.0)
+        low, high = low - 0.5 * missing, high + 0.5 * missing
         extinction = float(np.min(world["absorption"] + world["scattering"]))
         margin = min(_FREE_PATHS / max(extinction, 1e-30), _SCENES * float(np.linalg.norm(high - low)))
         frame = np.stack([low - margin, *np.diag(high - low + 2.0 * margin)])
@@ -136,7 +143,7 @@ class EmissiveMedia(BufferSet):
     def _fill(self, mesh: Mesh) -> float:
         """Part of its box that a closed mesh fills."""
         if id(mesh) not in self._fills:
-            self._fills[id(mesh)] = mesh, _filled_part(mesh)
+            self._fills[id(mesh)] = self._fills_before.get(id(mesh)) or (mesh, _filled_part(mesh))
         return self._fills[id(mesh)][1]
 
 

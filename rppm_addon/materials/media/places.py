@@ -81,7 +81,7 @@ class MediumPlaces:
             mesh = scene.meshes[instance.mesh]
             is_shared = interior.variation is Variation.PLACE_IN_OBJECT and not instance.attributes
             source = (scene.materials[material], mesh, *(() if is_shared else (instance,)), *images)
-            box = _box(mesh) if index in numbers else None
+            box = mesh_box(mesh) if index in numbers else None
             volume, number = mesh.volume, numbers.get(index, 0)
             yield PlacedMedium(
                 interior,
@@ -115,15 +115,15 @@ def voxel_spacing(volume: Volume) -> np.ndarray | None:
     return min(usable, key=np.prod) if usable else None
 
 
-def _density_factor(matrix: np.ndarray) -> float:
-    """Factor of densities by length in the space of an object, as in Cycles: by the scale along the diagonal."""
-    scale = float(np.linalg.norm(np.asarray(matrix, np.float64)[:3, :3] @ np.full(3, 1.0 / np.sqrt(3.0))))
-    return 1.0 / scale if scale > 0.0 else 1.0
-
-
-def _box(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
-    """Lowest and highest finite coordinates of a mesh, each (3,); None without any."""
+def mesh_box(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the lowest and highest finite coordinates of a mesh, each (3,) float64; None without any."""
     positions = mesh.positions[np.isfinite(mesh.positions).all(axis=1)]
     if not len(positions):
         return None
     return positions.min(axis=0).astype(np.float64), positions.max(axis=0).astype(np.float64)
+
+
+def _density_factor(matrix: np.ndarray) -> float:
+    """Factor of densities by length in the space of an object, as in Cycles: by the scale along the diagonal."""
+    scale = float(np.linalg.norm(np.asarray(matrix, np.float64)[:3, :3] @ np.full(3, 1.0 / np.sqrt(3.0))))
+    return 1.0 / scale if scale > 0.0 else 1.0

@@ -45,7 +45,7 @@ class MediaTables(BufferSet):
         self.world_scatters = False
         """Whether the world's medium scatters light."""
         self.fills_world = False
-        """Whether the world has a medium that is the same everywhere, and weakens light."""
+        """True where the world has a medium that is the same everywhere, and weakens light."""
         self.world_transmittance = (1.0, 1.0, 1.0)
         """Fraction of the light from infinitely far away that the world's medium lets through, by channel: 0 or 1."""
         self.places = MediumPlaces({}, None, 0)
@@ -104,8 +104,9 @@ class MediaTables(BufferSet):
         world = self._even[0][0]
         if world["emission"].any():
             self.emissive.add_world(scene, bounds, world)
+        even = self._even_emitters()
         for number, instance in enumerate(placed):
-            for medium in self._even_media(instance):
+            for medium in sorted({even[material] for material in instance.materials if material in even}):
                 self._table["light_group"][medium] = groups.get(instance.light_group, 0)
                 self.emissive.add_even(scene, instance, number, medium, self._even[medium][0]["emission"])
         for medium, varying in enumerate(self._varying, len(self._even)):
@@ -123,15 +124,11 @@ class MediaTables(BufferSet):
         if groups:
             self._media.upload(self._table)
 
-    def _even_media(self, instance: Instance) -> list[int]:
-        """Media within an instance that emit light and are the same everywhere, by number."""
-        known = {material for material in instance.materials if 0 <= material < self._material_count}
-        media = {int(self._records["medium"][material]) for material in known}
-        return [
-            medium
-            for medium in sorted(media)
-            if 0 < medium < len(self._even) and self._even[medium][0]["emission"].any()
-        ]
+    def _even_emitters(self) -> dict[int, int]:
+        """Numbers of the media that emit light and are the same everywhere, by material."""
+        media = self._records["medium"][: self._material_count].tolist()
+        shining = {number for number, (record, _) in enumerate(self._even) if number > 0 and record["emission"].any()}
+        return {material: medium for material, medium in enumerate(media) if medium in shining}
 
     def _upload(self, listed: list[_Medium]) -> None:
         first = 0

@@ -2,7 +2,9 @@
 """Photons that leave media: their flux, and the light that they bring, by closed forms."""
 
 import dataclasses
+import gc
 import math
+import weakref
 
 import fog
 import numpy as np
@@ -149,3 +151,21 @@ def test_a_world_that_absorbs_and_shines(renderer):
     scene = fog.scene_of(camera, floor, world=World(volume=volume), photons=16384, iterations=8, max_bounces=32)
     pictures = fog.pictures_of(renderer, scene, seeds=4)
     fog.assert_expected(pictures, EMISSION / 2.0, 0.02, bias=0.02)
+
+
+def test_a_world_around_a_line_scatters_its_light(renderer):
+    """A furnace with nothing in it but the camera, on an axis through the origin. Half of what is seen is scattered."""
+    camera = fog.camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 0.3)
+    world = World(volume=fog.volume(2.0, 2.0, emission=2.0))
+    scene = fog.scene_of(camera, world=world, photons=65536, iterations=4, volume_bounces=64)
+    assert fog.pictures_of(renderer, scene, seeds=2).mean() == pytest.approx(1.0, rel=0.2)
+
+
+def test_meshes_of_earlier_scenes_are_forgotten(renderer):
+    """In an animation, a body that changes its shape is another mesh in each frame."""
+    frames = [scenes.box(f"box {number}") for number in range(4)]
+    first = weakref.ref(frames[0])
+    while frames:
+        flux_of(renderer, (frames.pop(0), fog.fog(0.0, emission=EMISSION), np.eye(4)), photons=64)
+    gc.collect()
+    assert first() is None

@@ -35,7 +35,8 @@ def lost(mapper, extinction: float) -> float:
     return 2.0 * 1.2 * 5.0 / 32.0 * radius * extinction
 
 
-def assert_furnace(mapper, scene, extinction: float, most_error: float = 0.05) -> None:
+def pictures_of(mapper, scene) -> np.ndarray:
+    """(8, H, W, 3) float64 pictures of a scene, one a seed."""
     pictures = []
     for seed in range(8):
         scene.settings = scene.settings.with_values(seed=seed)
@@ -43,7 +44,11 @@ def assert_furnace(mapper, scene, extinction: float, most_error: float = 0.05) -
         for _ in range(scene.settings.iterations):
             mapper.iterate()
         pictures.append(mapper.film.read_radiance()[..., :3])
-    found = np.array(pictures, np.float64)
+    return np.array(pictures, np.float64)
+
+
+def assert_furnace(mapper, scene, extinction: float, most_error: float = 0.05) -> None:
+    found = pictures_of(mapper, scene)
     fog.assert_expected(found, 1.0, most_error, bias=lost(mapper, extinction))
 
 
@@ -77,14 +82,7 @@ def test_within(mapper):
 def test_a_dense_box(mapper):
     """Camera paths are scattered before photons count, so that nearly all of what the kernel misses is behind."""
     scene = furnace(Box(scattering=8.0, g=0.4), photons=8192)
-    pictures = []
-    for seed in range(8):
-        scene.settings = scene.settings.with_values(seed=seed)
-        mapper.build(scene)
-        for _ in range(scene.settings.iterations):
-            mapper.iterate()
-        pictures.append(mapper.film.read_radiance()[..., :3])
-    fog.assert_expected(np.array(pictures, np.float64), 1.0, 0.05, bias=0.02)
+    fog.assert_expected(pictures_of(mapper, scene), 1.0, 0.05, bias=0.02)
 
 
 def test_clear_surfaces_within(mapper):
@@ -93,13 +91,7 @@ def test_clear_surfaces_within(mapper):
     def mean(*inner: float) -> tuple[float, float]:
         boxes = [(scenes.box("inner", half), material("inner", CLEAR), np.eye(4)) for half in inner]
         scene = furnace(Box(scattering=2.0), *boxes, use_final_gather=False, transparent_max_bounces=64)
-        found = []
-        for seed in range(8):
-            scene.settings = scene.settings.with_values(seed=seed)
-            mapper.build(scene)
-            for _ in range(scene.settings.iterations):
-                mapper.iterate()
-            found.append(mapper.film.read_radiance()[..., :3].mean(dtype=np.float64))
+        found = pictures_of(mapper, scene).mean(axis=(1, 2, 3))
         return float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
 
     (plain, plain_error), (cut, cut_error) = mean(), mean(0.8, 0.6, 0.4)
