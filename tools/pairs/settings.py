@@ -46,7 +46,8 @@ def equalize(scene: bpy.types.Scene, effort: Effort) -> None:
     cycles.use_fast_gi = False
     cycles.samples, cycles.time_limit = effort.cycles_samples, effort.seconds
     ours.pixel_filter_type, ours.filter_width = FILTER
-    ours.max_bounces, ours.transparent_max_bounces = BOUNCES, TRANSPARENT_BOUNCES
+    ours.max_bounces = ours.volume_bounces = BOUNCES
+    ours.transparent_max_bounces = TRANSPARENT_BOUNCES
     for name in ("max_camera_bounces", "max_photon_bounces"):
         ours.property_unset(name)
     ours.film_exposure = cycles.film_exposure

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Media that vary from place to place, which absorb and emit light."""
+"""Media that vary from place to place."""
 
 import bpy
 import pytest
@@ -43,9 +43,19 @@ def shining_cloud() -> None:
 
 
 def volume_of_nodes() -> None:
-    """A volume object that geometry nodes make, a ball whose density falls off, turned and stretched."""
+    """A volume object that geometry nodes make, a ball whose density falls off, turned and stretched; it absorbs."""
     made, net = material("Ball")
     net.output(Volume=net.out("VolumePrincipled", inputs={"Color": (0.0, 0.0, 0.0), "Density": 1.5}))
+    ball_of_nodes(made)
+
+
+def volume_without_a_material() -> None:
+    """The same ball without a material, which scatters as Principled Volume does by itself."""
+    ball_of_nodes(None)
+
+
+def ball_of_nodes(made: bpy.types.Material | None) -> None:
+    """A volume of geometry nodes whose density falls from the middle of a box on."""
     source = box((1.0, 1.0, 1.0), made, place(at=(0.0, 0.0, 1.2), turn=(0.0, 0.0, 30.0)))
     source.scale = (1.2, 1.0, 0.9)
     tree = bpy.data.node_groups.new("Ball", "GeometryNodeTree")
@@ -71,7 +81,12 @@ def volume_of_nodes() -> None:
     light("AREA", 150.0, place(at=(1.0, -1.0, 5.0)), shape="SQUARE", size=1.0)
 
 
-BUILDS = [pytest.param(absorbing_cloud, marks=pytest.mark.long), shining_cloud, volume_of_nodes]
+BUILDS = [
+    pytest.param(absorbing_cloud, marks=pytest.mark.long),
+    shining_cloud,
+    volume_of_nodes,
+    volume_without_a_material,
+]
 
 
 @pytest.mark.parametrize("build", BUILDS, ids=lambda build: build.__name__)

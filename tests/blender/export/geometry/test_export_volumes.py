@@ -11,6 +11,8 @@ from node_trees import add_node, link, multiply_cubes, new_material, node_group
 from support.media.vdb_files import write_vdb
 
 from rppm_addon.blender.export.geometry.volumes import gas_domains, vdb_files
+from rppm_addon.materials.nodes import volumes as volume_nodes
+from rppm_addon.scene.node_graphs import Link
 
 MATRIX = np.array([[0.1, 0, 0, 1.0], [0, 0.2, 0, 2.0], [0, 0, 0.1, 3.0], [0, 0, 0, 1]])
 COUNTS = (5, 4, 6)
@@ -78,6 +80,27 @@ def test_a_volume_has_no_surface(scene, tmp_path):
     (material,) = (exported.materials[number] for number in exported.instances[0].materials)
     assert [node.kind for node in material.graph.nodes] == ["volume_boundary"]
     assert material.interior is not None
+
+
+def test_a_volume_without_a_material_has_principled_volume(scene, tmp_path):
+    """Cycles gives it one; a domain of gas without a material shows nothing."""
+    path = write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values())
+    volume_of(scene, path, "With", material=smoke_material(surface=False))
+    volume_of(scene, path, "Without")
+    exported = export(scene)
+    inputs = {}
+    for instance in exported.instances:
+        (number,) = instance.materials
+        graph = exported.materials[number].interior
+        node, density = (graph.nodes[link.node] for link in (graph.surface, graph.nodes[-1].inputs["density_grid"]))
+        assert (node.kind, density.kind, density.attribute) == ("volume_principled", "grid_attribute", "density")
+        defaults = {name: default for name, (_, default) in volume_nodes.KINDS[node.kind].inputs.items()}
+        inputs[instance.object_name] = {
+            name: np.broadcast_to(value, 3).tolist()
+            for name, value in (defaults | node.inputs).items()
+            if not isinstance(value, Link)
+        }
+    assert inputs["With"] == inputs["Without"]
 
 
 @pytest.mark.parametrize("damage", ["missing", "cut", "no volume"])

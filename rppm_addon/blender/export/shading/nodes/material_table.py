@@ -13,6 +13,9 @@ from ...context import ExportContext
 from ...geometry.meshes.attributes import NO_ATTRIBUTE
 from .materials import export_material
 
+_NO_MATERIAL = 0
+"""Stands for the session_uid of a material where there is none."""
+
 
 class MaterialTable:
     """The materials of a scene under export, each exported once and as long as it does not change."""
@@ -25,8 +28,8 @@ class MaterialTable:
         """Attributes that rays of nodes read wherever they hit, so that all meshes are asked for them."""
         self._context = context
         self._places: dict[int, int] = {}
-        self._of_volumes: dict[int, int] = {}
-        """Places of materials as they are on volumes, by those of the materials."""
+        self._of_volumes: dict[tuple[int, bool], int] = {}
+        """Places of materials as they are on volumes, by those of the materials and whether gas has them."""
         self._on_round_shapes: set[int] = set()
         """Places of those that are on strands or points."""
         self.untracked: set[int] = set()
@@ -35,7 +38,7 @@ class MaterialTable:
     def index(self, material: bpy.types.Material | None) -> int:
         """Index of a material, exported now if it is new; None is what Cycles gives faces without one."""
         # Blender gives evaluated copies no session_uid.
-        key = 0 if material is None else material.original.session_uid
+        key = _NO_MATERIAL if material is None else material.original.session_uid
         if key not in self._places:
             exported = self._export(key, material)
             self._places[key] = len(self.materials)
@@ -44,13 +47,17 @@ class MaterialTable:
             self.sampled |= _sampled_of(exported)
         return self._places[key]
 
-    def of_volume(self, place: int) -> int:
-        """Index of a material as it is on a volume, which has no surface but grids."""
-        if place not in self._of_volumes:
-            self._of_volumes[place] = len(self.materials)
-            self.materials.append(_of_volume(self.materials[place]))
+    def of_volume(self, place: int, is_gas: bool) -> int:
+        """Index of a material as it is on a volume, which has no surface but grids.
+
+        is_gas: it is on the gas of a fluid domain, which is not seen where it has no material; volume objects without
+        one have Principled Volume.
+        """
+        if (place, is_gas) not in self._of_volumes:
+            self._of_volumes[place, is_gas] = len(self.materials)
+            self.materials.append(self._on_volume(place, is_gas))
             self.attributes.append({})
-        return self._of_volumes[place]
+        return self._of_volumes[place, is_gas]
 
     def put_on_round_shapes(self, places: list[int]) -> None:
         """Materials are on strands or points as well."""
@@ -67,10 +74,18 @@ class MaterialTable:
         exported.on_round_shapes = place in self._on_round_shapes
         before = self.attributes[place], self.sampled
         self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
-        if place in self._of_volumes:
-            self.materials[self._of_volumes[place]] = _of_volume(exported)
+        for is_gas in (False, True):
+            if (place, is_gas) in self._of_volumes:
+                self.materials[self._of_volumes[place, is_gas]] = self._on_volume(place, is_gas)
         self.sampled |= _sampled_of(exported)
         return (self.attributes[place], self.sampled) != before
+
+    def _on_volume(self, place: int, is_gas: bool) -> Material:
+        graph = NodeGraph()
+        graph.surface = graph.add("volume_boundary", "bsdf")
+        material = self.materials[place]
+        interior = default_volume() if place == self._places.get(_NO_MATERIAL) and not is_gas else material.interior
+        return dataclasses.replace(material, graph=graph, interior=interior, reads_grids=True)
 
     def _export(self, key: int, material: bpy.types.Material | None) -> Material:
         reads = self._context.untracked_reads
@@ -81,12 +96,6 @@ class MaterialTable:
                 exported = export_material(material, self._context)
         (self.untracked.add if self._context.untracked_reads > reads else self.untracked.discard)(key)
         return exported
-
-
-def _of_volume(material: Material) -> Material:
-    graph = NodeGraph()
-    graph.surface = graph.add("volume_boundary", "bsdf")
-    return dataclasses.replace(material, graph=graph, reads_grids=True)
 
 
 def _attributes_of(material: Material) -> dict[str, str]:
@@ -103,4 +112,12 @@ def default_surface() -> NodeGraph:
     """A Principled surface whose sockets are untouched."""
     graph = NodeGraph()
     graph.surface = graph.add("bsdf_principled", "bsdf", options={"distribution": "MULTI_GGX"})
+    return graph
+
+
+def default_volume() -> NodeGraph:
+    """A Principled Volume whose sockets are untouched, which Cycles gives volume objects without a material."""
+    graph = NodeGraph()
+    density, temperature = (graph.add("grid_attribute", "fac", attribute=name) for name in ("density", "temperature"))
+    graph.surface = graph.add("volume_principled", "volume", density_grid=density, temperature_grid=temperature)
     return graph
