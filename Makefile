@@ -137,7 +137,7 @@ bench: bench-tools ## Measure deep cubemap and estimator for docs/benchmarks/ (B
 bench-export: setup ## Measure what a frame costs in which everything moves (BENCH=--quick)
 	.venv/bin/python -m benchmarks.export.speed --output out/benchmarks/export.json $(BENCH)
 
-bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal time, to out/peers/ (BENCH=--quick, --plain, --publish)
+bench-peers: bench-tools ## Compare with Cycles, LuxCore and Mitsuba at equal time, to out/peers/ (BENCH=--quick, --plain, --files, --publish)
 	.venv/bin/python -m benchmarks.peers.run $(BENCH)
 
 drivers: setup ## Compile all programs on drivers of GPUs that are not there (DRIVERS=--quick: three of them, what changed)

@@ -77,15 +77,21 @@ def describe(context: Context, clock: Clock, commit: str | None = None) -> dict[
         "driver": information.driver,
         "opengl": information.version,
         "software_driver": context.is_software,
-        "processor": processor_name(),
-        "cores": clock.cores,
-        "system": platform.platform(),
-        "python": platform.python_version(),
         "moderngl": moderngl.__version__,
         "numpy": np.__version__,
+        "clock": clock.description,
+    } | describe_host(commit)
+
+
+def describe_host(commit: str | None = None) -> dict[str, object]:
+    """Processor, system, Python, commit and date, as plain values."""
+    return {
+        "processor": processor_name(),
+        "cores": usable_cores(),
+        "system": platform.platform(),
+        "python": platform.python_version(),
         "commit": commit or checkout_commit(),
         "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC"),
-        "clock": clock.description,
     }
 
 

@@ -102,10 +102,10 @@ def _record_photons(mapper: ProgressivePhotonMapper, iteration: int) -> list[np.
     taken = []
     plain = AccelerationStructure.trace
 
-    def take(structure, rays, hits, active):
+    def take(structure, rays, hits, active, *paths):
         records = np.frombuffer(rays.read(RAY.size * active.capacity), RAY.dtype)[np.sort(active.read())]
         taken.append(records[records["maximum_distance"] > 0.0])
-        plain(structure, rays, hits, active)
+        plain(structure, rays, hits, active, *paths)
 
     AccelerationStructure.trace = take
     try:

@@ -8,6 +8,7 @@ import sys
 import time
 from pathlib import Path
 
+from ..machine import describe_host
 from .jobs import Answer, Job
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,6 +24,11 @@ _LLVM = "libllvm19"
 _LONGEST_INSTALLATION = 900.0
 _START_SECONDS = 300.0
 """How long loading, compiling and building may take beside the seconds asked for."""
+
+
+def describe_busy_host() -> dict[str, object]:
+    """Describe the machine of a comparison, and how busy it is before."""
+    return describe_host() | {"load": os.getloadavg()[0]}
 
 
 def python_of(adapter: str) -> Path:

@@ -25,6 +25,7 @@ class Job:
     """One scene by one method of one renderer, in a process of its own."""
 
     scene: str
+    """Name of a scene of scenes.py; empty for a file whose settings both renderers take as they are."""
     folder: str
     """Where pictures and answer go."""
     source: str = ""
@@ -36,6 +37,7 @@ class Job:
     samples: list[int] = field(default_factory=list)
     """In place of times: numbers of samples a pixel, or of iterations."""
     resolution: int = 256
+    """Width and height in pixels, where the scene has a name."""
     seed: int = 1
     launched: float = 0.0
     """time.time() as the process was started."""
@@ -105,14 +107,14 @@ class Recorder:
         self.answer.pictures.append(Picture(mark, seconds, samples, str(path)))
 
 
-def run_adapter(version: Callable[[], str], render: Callable[[Job, Scene, Recorder], None]) -> int:
+def run_adapter(version: Callable[[], str], render: Callable[[Job, Scene | None, Recorder], None]) -> int:
     """The program of an adapter: its argument is the file of a job, beside which the answer is written."""
     parser = argparse.ArgumentParser()
     parser.add_argument("job", type=Path)
     path = parser.parse_args().job
     job = Job.read(path)
     recorder = Recorder(job, version())
-    render(job, make_scene(job.scene), recorder)
+    render(job, make_scene(job.scene) if job.scene else None, recorder)
     scale = 1 if sys.platform == "darwin" else 1024
     recorder.answer.peak_bytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale
     recorder.answer.write(path.with_name("answer.json"))

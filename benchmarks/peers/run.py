@@ -6,20 +6,15 @@ docs/benchmarks/ as well. Let nothing else run on the machine, or times mean not
 """
 
 import argparse
-import datetime
 import os
-import platform
 import sys
 import time
 
 import numpy as np
 
-from rppm_addon.processors import usable_cores
-
-from ..machine import checkout_commit, processor_name
-from . import plain
+from . import blend_files, plain
 from .description import Scene
-from .environments import OUT, ROOT, install, run_job
+from .environments import OUT, ROOT, describe_busy_host, install, run_job
 from .files import PeersError, SceneFiles
 from .jobs import Answer, Job
 from .methods import METHODS, Method, chosen
@@ -95,24 +90,12 @@ def curve_of(method: Method, answer: Answer, reference: Reference, exposure: flo
     )
 
 
-def describe_machine() -> dict[str, object]:
-    """Describe the machine that the comparison ran on, and how busy it was before."""
-    return {
-        "processor": processor_name(),
-        "cores": usable_cores(),
-        "system": platform.platform(),
-        "python": platform.python_version(),
-        "commit": checkout_commit(),
-        "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d %H:%M UTC"),
-        "load": os.getloadavg()[0],
-    }
-
-
 def parse() -> argparse.Namespace:
     """The command line; --quick changes what is not given."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="three scenes, 2 and 5 s, cheap references")
     parser.add_argument("--plain", action="store_true", help="plain scenes by sample; --plain --help tells its options")
+    parser.add_argument("--files", action="store_true", help=".blend files; --files --help tells its options")
     parser.add_argument("--scenes", nargs="*", choices=tuple(SCENES), metavar="SCENE", help=", ".join(SCENES))
     parser.add_argument("--methods", nargs="*", choices=tuple(METHODS), metavar="METHOD", help=", ".join(METHODS))
     parser.add_argument("--seconds", type=lambda text: sorted(float(part) for part in text.split(",")))
@@ -139,6 +122,8 @@ def write_pages(results: Results, publish: bool) -> None:
 def main() -> int:
     if "--plain" in sys.argv[1:]:
         return plain.main([argument for argument in sys.argv[1:] if argument != "--plain"])
+    if "--files" in sys.argv[1:]:
+        return blend_files.main([argument for argument in sys.argv[1:] if argument != "--files"])
     options = parse()
     if options.page:
         write_pages(Results.read(OUT / "results.json"), options.publish)
@@ -151,7 +136,7 @@ def main() -> int:
             methods = [method for method in methods if method.adapter != adapter]
     files = SceneFiles(options.resolution)
     store = ReferenceStore(files, options.resolution, options.reference_seconds)
-    results = Results(describe_machine(), options.seconds, options.resolution)
+    results = Results(describe_busy_host(), options.seconds, options.resolution)
     for name in options.scenes:
         try:
             measure(make_scene(name), methods, files, store, results)

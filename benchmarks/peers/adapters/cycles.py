@@ -18,11 +18,13 @@ _NO_LIMIT = 1 << 24
 _LEAST_SECONDS = 0.02
 
 
-def render(job: Job, scene: Scene, recorder: Recorder) -> None:
+def render(job: Job, scene: Scene | None, recorder: Recorder) -> None:
     bpy.ops.wm.open_mainfile(filepath=job.source, load_ui=False, use_scripts=False)
     blender_scene = bpy.context.scene
     _set_up(blender_scene, job)
-    if job.options.get("shadow_caustics"):
+    if scene is not None:
+        _set_light_paths(blender_scene, job)
+    if scene is not None and job.options.get("shadow_caustics"):
         _mark_caustics(scene)
     cycles = blender_scene.cycles
     with tempfile.TemporaryDirectory() as folder:
@@ -43,21 +45,25 @@ def render(job: Job, scene: Scene, recorder: Recorder) -> None:
 def _set_up(scene: bpy.types.Scene, job: Job) -> None:
     settings, cycles = scene.render, scene.cycles
     settings.engine, cycles.device = "CYCLES", "CPU"
-    settings.resolution_x = settings.resolution_y = job.resolution
-    settings.resolution_percentage = 100
     settings.use_compositing = settings.use_sequencer = False
     settings.image_settings.media_type = "IMAGE"
     settings.image_settings.file_format, settings.image_settings.color_depth = "OPEN_EXR", "32"
     settings.use_file_extension = False
+    cycles.use_denoising = bool(job.options.get("denoise"))
+    if cycles.use_denoising:
+        cycles.denoiser, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "RGB_ALBEDO_NORMAL"
+        cycles.denoising_prefilter = "ACCURATE"
+
+
+def _set_light_paths(scene: bpy.types.Scene, job: Job) -> None:
+    settings, cycles = scene.render, scene.cycles
+    settings.resolution_x = settings.resolution_y = job.resolution
+    settings.resolution_percentage = 100
     cycles.use_adaptive_sampling, cycles.use_auto_tile = False, False
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.blur_glossy = 0.0
     cycles.caustics_reflective = cycles.caustics_refractive = not job.options.get("no_caustics")
     for kind in ("max", "diffuse", "glossy", "transmission"):
         setattr(cycles, f"{kind}_bounces", DEPTH)
-    cycles.use_denoising = bool(job.options.get("denoise"))
-    if cycles.use_denoising:
-        cycles.denoiser, cycles.denoising_input_passes = "OPENIMAGEDENOISE", "RGB_ALBEDO_NORMAL"
-        cycles.denoising_prefilter = "ACCURATE"
 
 
 def _mark_caustics(scene: Scene) -> None:

@@ -17,7 +17,7 @@ _NO_LIMIT = 1 << 30
 _LEAST_SECONDS = 0.02
 
 
-def render(job: Job, scene: Scene, recorder: Recorder) -> None:
+def render(job: Job, scene: Scene | None, recorder: Recorder) -> None:
     saved = load_scene(job.source)
     settings = saved.settings.with_values(seed=job.seed, **job.options)
 
