@@ -12,6 +12,7 @@ import argparse
 import dataclasses
 import json
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,11 +58,11 @@ class FileError(RuntimeError):
 class FileComparison:
     """Renders .blend files by both renderers and measures errors."""
 
-    def __init__(self, resolution: str, seconds: list[float], reference_seconds: float) -> None:
-        """resolution: such as 320x180; reference_seconds: of each of the reference's two runs."""
+    def __init__(self, resolution: str, seconds: list[float], reference_samples: int) -> None:
+        """resolution: such as 320x180; reference_samples: per pixel, in each of the reference's two runs."""
         self._resolution = resolution
         self._seconds = seconds
-        self._reference_seconds = reference_seconds
+        self._reference_samples = reference_samples
 
     def rows(self, source: Path) -> list[Row]:
         """Results of a file. Raises FileError."""
@@ -96,18 +97,26 @@ class FileComparison:
         """The mean of two long runs, and the relative mean square error that it has by their noise."""
         halves = []
         for seed in _REFERENCE_SEEDS:
-            place = folder / f"reference_{self._reference_seconds:g}s_{seed}"
+            place = folder / f"reference_{self._reference_samples}_{seed}"
             if (place / "answer.json").exists():
                 halves.append(Answer.read(place / "answer.json").pictures[-1].load())
                 continue
-            answer = self._render(place, "cycles", source, {}, [self._reference_seconds], seed)
+            answer = self._render(place, "cycles", source, {}, samples=[self._reference_samples], seed=seed)
             halves.append(answer.pictures[-1].load())
         return 0.5 * (halves[0] + halves[1]), 0.25 * relative_mse(halves[0], halves[1])
 
     def _render(
-        self, folder: Path, adapter: str, source: Path, options: dict[str, object], seconds: list[float], seed: int = 1
+        self,
+        folder: Path,
+        adapter: str,
+        source: Path,
+        options: dict[str, object],
+        seconds: Sequence[float] = (),
+        samples: Sequence[int] = (),
+        seed: int = 1,
     ) -> Answer:
-        answer = run_job(adapter, Job("", str(folder), str(source), options, seconds, [], 0, seed))
+        job = Job("", str(folder), str(source), options, list(seconds), list(samples), resolution=0, seed=seed)
+        answer = run_job(adapter, job)
         if answer.error or not answer.pictures:
             raise FileError(f"no picture of {source} by {adapter}: {answer.error}")
         return answer
@@ -168,11 +177,11 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser("bench-peers --files", description=__doc__.splitlines()[0])
     parser.add_argument("files", nargs="+", type=Path, help=".blend files")
     parser.add_argument("--seconds", type=lambda text: sorted(float(part) for part in text.split(",")), default=[5, 20])
-    parser.add_argument("--reference-seconds", type=float, default=120.0, help="of each of a reference's two runs")
+    parser.add_argument("--reference-samples", type=int, default=1024, help="of each of a reference's two runs")
     parser.add_argument("--resolution", default="320x180")
     parser.add_argument("--publish", action="store_true", help=f"write {PAGE.relative_to(ROOT)}")
     options = parser.parse_args(arguments)
-    comparison = FileComparison(options.resolution, options.seconds, options.reference_seconds)
+    comparison = FileComparison(options.resolution, options.seconds, options.reference_samples)
     machine, rows = describe_busy_host(), []
     for file in options.files:
         try:

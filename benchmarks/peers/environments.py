@@ -24,6 +24,8 @@ _LLVM = "libllvm19"
 _LONGEST_INSTALLATION = 900.0
 _START_SECONDS = 300.0
 """How long loading, compiling and building may take beside the seconds asked for."""
+_SECONDS_A_SAMPLE = 4.0
+"""How long a sample of all pixels may take where samples are asked for."""
 
 
 def describe_busy_host() -> dict[str, object]:
@@ -86,7 +88,7 @@ def run_job(adapter: str, job: Job) -> Answer:
         old.unlink(missing_ok=True)
     job.launched = time.time()
     job.write(folder / "job.json")
-    limit = 4.0 * sum(job.seconds) + _START_SECONDS
+    limit = 4.0 * sum(job.seconds) + _SECONDS_A_SAMPLE * sum(job.samples) + _START_SECONDS
     command = [str(python_of(adapter)), "-m", f"benchmarks.peers.adapters.{adapter}", str(folder / "job.json")]
     problem = run(command, limit, folder / "log.txt", variables_of(adapter))
     if not (folder / "answer.json").exists():
