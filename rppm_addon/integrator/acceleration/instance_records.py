@@ -3,7 +3,6 @@
 
 import numpy as np
 
-from ..common.affine import determinants
 from .acceleration_structure import MARGIN
 from .instances import BOTTOM_LEVEL_INSTANCE, InstancedMeshes
 
@@ -22,7 +21,7 @@ def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float
     records["first_triangle"] = instanced.mesh_first_triangles[instanced.which]
     records["root"] = roots
     records["placement"] = instanced.placements
-    records["mirrored"] = determinants(instanced.matrices) < 0.0
+    records["mirrored"] = instanced.are_mirrored
     # Rounding of a ray's origin, and of the vertices in the world.
     scales = np.linalg.norm(instanced.inverses[:, :, :3], axis=(1, 2))
     records["margin"] = MARGIN * reach * scales

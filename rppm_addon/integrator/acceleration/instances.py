@@ -96,8 +96,8 @@ class InstancedMeshes:
     """(n,) int64, the mesh of each instance, by its place in ``meshes``."""
     placements: np.ndarray
     """(n,) int64, the number of each among all instances."""
-    matrices: np.ndarray
-    """(n, 4, 4) float64, object to world."""
+    are_mirrored: np.ndarray
+    """(n,) bool, those whose matrix mirrors."""
     inverses: np.ndarray
     """(n, 3, 4) float64, the upper rows of the inverse matrices."""
     entries: np.ndarray

@@ -21,7 +21,8 @@ from ..common.iteration import Iteration
 from ..common.records.triangles import TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
-from ..surfaces.geometry import Geometry, Placement
+from ..surfaces.geometry import Geometry
+from ..surfaces.placements import Placement
 
 _CAMERAS = ("", "_before", "_after")
 Record(

@@ -2,6 +2,7 @@
 """The lights of a scene on the device: their table, what chooses one of them, and how many photons each gets."""
 
 import math
+import operator
 from collections.abc import Mapping
 
 import moderngl
@@ -64,9 +65,10 @@ _BOUNCED = RayVisibility.DIFFUSE | RayVisibility.GLOSSY | RayVisibility.TRANSMIS
 
 def shadows_are_of_all(scene: Scene) -> bool:
     """Whether shadow rays meet the same objects as rays that surfaces scatter, so that both find the same light."""
-    return all(
-        instance.visibility & _BOUNCED == _BOUNCED and not instance.shadow_catcher for instance in scene.instances
-    )
+    instances = scene.instances
+    seen = np.fromiter(map(operator.attrgetter("visibility"), instances), np.int64, len(instances))
+    meet_all = bool((seen & int(_BOUNCED) == int(_BOUNCED)).all())
+    return meet_all and not any(map(operator.attrgetter("shadow_catcher"), instances))
 
 
 class Lights(BufferSet):
