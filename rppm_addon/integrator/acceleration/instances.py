@@ -86,6 +86,18 @@ def _arrays_of(mesh: Mesh) -> tuple[np.ndarray | None, ...]:
 
 
 @dataclass(frozen=True)
+class HitPlaces:
+    """Places of the triangles that paths hit on instances that are not expanded."""
+
+    first_triangle: int
+    triangle_count: int
+    origins: moderngl.Buffer
+    """HitOrigins."""
+    first_of: dict[HitPaths, int]
+    """The first hit triangle of each list of paths, counted from ``first_triangle``."""
+
+
+@dataclass(frozen=True)
 class InstancedMeshes:
     """Instances of a scene that are not expanded to world triangles, and their meshes."""
 
@@ -106,14 +118,26 @@ class InstancedMeshes:
     """(n,) uint32, the material of the first slot of each."""
     boxes: np.ndarray
     """(n, 2, 3) float64, low and high corners in the world, meters."""
+    versions: np.ndarray
+    """(n,) int64, the ``version`` since which each is as it is."""
+    version: int
+    """Number of the build that these are of, among those of their geometry."""
     world: TriangleSources
-    first_hit_triangle: int
-    hit_triangle_count: int
-    hit_origins: moderngl.Buffer
-    first_hits: dict[HitPaths, int]
-    """The first hit triangle of each list of paths, counted from first_hit_triangle."""
+    hits: HitPlaces
     gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
     """Makes world triangles of the hits (HIT) of active paths of a list, by the acceleration structure's blocks."""
+
+    def has_rows_of(self, before: "InstancedMeshes") -> bool:
+        """True where the rows are those of the same instances, with the same meshes at the same places."""
+        return (
+            np.array_equal(self.placements, before.placements)
+            and np.array_equal(self.which, before.which)
+            and np.array_equal(self.mesh_first_triangles, before.mesh_first_triangles)
+        )
+
+    def changed_since(self, before: "InstancedMeshes") -> np.ndarray:
+        """(k,) the rows that are not as they were, ascending. ``before``: an earlier build of the same geometry."""
+        return np.flatnonzero(self.versions > before.version)
 
     @property
     def triangle_count(self) -> int:

@@ -3,6 +3,7 @@
 
 import operator
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -35,7 +36,7 @@ class InstanceColumns:
         """Take the instances of a scene; returns the rows that were read, ascending int64."""
         count = len(instances)
         if len(self._instances) != count:
-            self.__init__()  # type: ignore[misc]
+            self._numbers.clear()
             self.meshes, self.materials = np.zeros((2, count), np.int64)
             self.visibility, self.sets = np.zeros((2, count), np.int64)
             self.matrices = np.zeros((count, 4, 4))
@@ -55,7 +56,7 @@ class InstanceColumns:
         return rows
 
 
-def column(members: Sequence, name: str, dtype: type, of_value: Callable[[object], float] | None = None) -> np.ndarray:
+def column(members: Sequence, name: str, dtype: type, of_value: Callable[[Any], float] | None = None) -> np.ndarray:
     """(n,) what an attribute of each member says, or what a function makes of its value."""
     values = map(operator.attrgetter(name), members)
     if of_value is None:

@@ -20,7 +20,7 @@ from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_members
-from ..acceleration.instances import HitPaths, InstancedMeshes, TriangleSources
+from ..acceleration.instances import HitPaths, HitPlaces, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
 from ..common.instance_columns import InstanceColumns, numbered
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
@@ -324,11 +324,10 @@ class Geometry(BufferSet):
             entries[chosen],
             first_materials[chosen],
             self.placed.boxes[chosen],
+            self.placed.versions[chosen],
+            self.placed.version,
             world,
-            self._hits.first,
-            self._hits.count,
-            self._hits.origins.buffer,
-            self._hits.first_hits,
+            HitPlaces(self._hits.first, self._hits.count, self._hits.origins.buffer, self._hits.first_hits),
             self._gather_hits,
         )
 

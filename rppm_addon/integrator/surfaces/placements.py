@@ -67,6 +67,10 @@ class PlacedArrays:
         """(n, 3) the points in object space from which vertices are counted (_pivots)."""
         self.rows = np.zeros((0, 3, 4), np.float32)
         """(n, 3, 4) upper rows of the matrices by which vertices, less the pivot, are placed."""
+        self.version = 0
+        """Number of calls of take."""
+        self.versions = np.zeros(0, np.int64)
+        """(n,) the call since which each row is as it is."""
 
     def take(self, matrices: np.ndarray, boxes: np.ndarray, has_pivots: bool, changed: np.ndarray | None) -> None:
         """Take the matrices (n, 4, 4) of the placements and the boxes (n, 2, 3) of their meshes. ``has_pivots``: the
@@ -78,8 +82,11 @@ class PlacedArrays:
             self.inverses, self.rows = np.zeros((count, 3, 4)), np.zeros((count, 3, 4), np.float32)
             self.determinants, self.is_near = np.zeros(count), np.zeros(count, bool)
             self.boxes, self.pivots = np.zeros((count, 2, 3)), np.zeros((count, 3), np.float32)
+            self.versions = np.zeros(count, np.int64)
+        self.version += 1
         chosen = slice(None) if changed is None else changed
         matrices, boxes = matrices[chosen], boxes[chosen]
+        self.versions[chosen] = self.version
         with np.errstate(invalid="ignore", over="ignore"):
             self.inverses[chosen] = affine_inverses(matrices)
             self.determinants[chosen] = determinants(matrices)

@@ -15,6 +15,7 @@ from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
 from ...scene.storage.sharing import changed_members, same_members
+from ..acceleration.instance_records import runs
 from ..common.affine import affine_inverses
 from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry
@@ -111,7 +112,7 @@ class SurfaceAttributes(BufferSet):
         if stays and len(before) == len(instances):
             rows = changed_members(before, instances)
         self.has_terminators = False
-        for part in _runs(rows):
+        for part in runs(rows, _AT_ONCE):
             records = SHADING_INSTANCE.zeros(len(part))
             chosen = slice(int(part[0]), int(part[-1]) + 1)
             _fill(records, instances[chosen], placed.matrices[chosen], placed.inverses[chosen], meshes)
@@ -153,12 +154,6 @@ class SurfaceAttributes(BufferSet):
             if not same_members(sources[place], before.get(place, ())):
                 self._values.write(_per_corner(attribute, mesh, is_turned), 4 * place)
         self._sources = sources
-
-
-def _runs(rows: np.ndarray) -> list[np.ndarray]:
-    """Ascending rows, those together that follow each other, but no more than are filled in at a time."""
-    breaks = np.flatnonzero((np.diff(rows) != 1) | (np.arange(1, len(rows)) % _AT_ONCE == 0))
-    return np.split(rows, breaks + 1) if len(rows) else []
 
 
 def _fill(
