@@ -10,6 +10,8 @@ import numpy as np
 from ...scene.meshes import Instance
 from ..common.affine import affine_inverses, determinants
 
+_AT_ONCE = 1 << 15
+"""Rows that are computed at a time: what lies between fits into a processor's cache."""
 _FAR_VERTICES = 128.0
 """Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 
@@ -84,8 +86,13 @@ class PlacedArrays:
             self.boxes, self.pivots = np.zeros((count, 2, 3)), np.zeros((count, 3), np.float32)
             self.versions = np.zeros(count, np.int64)
         self.version += 1
-        chosen = slice(None) if changed is None else changed
-        matrices, boxes = matrices[chosen], boxes[chosen]
+        rows = np.arange(len(matrices)) if changed is None else changed
+        for start in range(0, len(rows), _AT_ONCE):
+            self._compute(boxes, has_pivots, rows[start : start + _AT_ONCE])
+
+    def _compute(self, boxes: np.ndarray, has_pivots: bool, chosen: np.ndarray) -> None:
+        """Fill in rows, by the boxes of the meshes of all."""
+        matrices, boxes = self.matrices[chosen], boxes[chosen]
         self.versions[chosen] = self.version
         with np.errstate(invalid="ignore", over="ignore"):
             self.inverses[chosen] = affine_inverses(matrices)
