@@ -4,6 +4,7 @@
 import numpy as np
 
 from ...gl.buffers.buffers import GrowingBuffer
+from ..common.affine import affine_inverses
 from .acceleration_structure import MARGIN
 from .instances import BOTTOM_LEVEL_INSTANCE, InstancedMeshes
 
@@ -58,7 +59,8 @@ def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float
     """BOTTOM_LEVEL_INSTANCE records of rows of instances. roots: (n,) those of these; reach: how far from the world's
     origin anything is, meters."""
     records = BOTTOM_LEVEL_INSTANCE.zeros(len(rows))
-    inverses, entries = instanced.inverses[rows], instanced.entries[rows]
+    with np.errstate(invalid="ignore", over="ignore"):
+        inverses, entries = affine_inverses(instanced.matrices[rows]), instanced.entries[rows]
     for row in range(3):
         records[f"to_object{row}"] = inverses[:, row]
         records[f"row{row}"] = entries[f"row{row}"]

@@ -110,8 +110,8 @@ class InstancedMeshes:
     """(n,) int64, the number of each among all instances."""
     are_mirrored: np.ndarray
     """(n,) bool, those whose matrix mirrors."""
-    inverses: np.ndarray
-    """(n, 3, 4) float64, the upper rows of the inverse matrices."""
+    matrices: np.ndarray
+    """(n, 4, 4) float64, object to world."""
     entries: np.ndarray
     """(n,) records with row0, row1, row2, pivot and set_code, as the triangles of expanded instances are placed by."""
     first_materials: np.ndarray

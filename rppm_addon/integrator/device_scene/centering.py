@@ -8,6 +8,7 @@ the same bits in whatever order frames are rendered, and for a scene around the 
 """
 
 import dataclasses
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -19,6 +20,7 @@ from ...scene.meshes import Instance
 from ...scene.motion import CameraMovement, Movement, Shutter
 from ...scene.scene import Scene
 from ...scene.storage.sharing import changed_members, same_members
+from ..common.instance_columns import column
 from ..surfaces.geometry import finite_bounds
 from ..surfaces.placements import placed_boxes
 
@@ -26,6 +28,12 @@ CELL = 256.0
 """Meters between places to count from: within half of it coordinates have steps of less than 8 micrometers."""
 _FARTHEST = 1e15
 """Meters from which on nothing is rendered (placed_boxes)."""
+
+
+_AT_ONCE = 1 << 15
+"""Instances that are looked at together."""
+_OTHERS = operator.attrgetter(*(member.name for member in dataclasses.fields(Instance)[2:]))
+"""All that an instance says but its mesh and its matrix, which come first."""
 
 
 class Centering:
@@ -99,8 +107,11 @@ class Centering:
         rows_before = changed if is_alike else np.arange(len(before))
         known = {id(before[row]): made[row] for row in rows_before.tolist()}
         made = list(made) if is_alike else list(instances)
+        new = [row for row in changed.tolist() if id(instances[row]) not in known]
         for row in changed.tolist():
-            made[row] = known.get(id(instances[row])) or _moved(instances[row], origin)
+            made[row] = known.get(id(instances[row]), made[row])
+        for row, moved in zip(new, _moved([instances[row] for row in new], origin), strict=True):
+            made[row] = moved
         self._instances = list(instances), made
         return made
 
@@ -132,22 +143,28 @@ class SceneBounds:
             rows = np.arange(count)
             self._corners = np.array([np.full((count, 3), np.inf), np.full((count, 3), -np.inf)])
         self._instances = []  # should anything fail
-        some = instances if len(rows) == count else [instances[row] for row in rows.tolist()]
-        self._corners[0, rows], self._corners[1, rows] = np.inf, -np.inf
-        has_box = np.array([boxes[instance.mesh] is not None for instance in some], bool)
-        found = [instance for instance in some if boxes[instance.mesh] is not None]
-        if found:
-            matrices = np.array([instance.matrix for instance in found], np.float64)
-            lows, highs, good = placed_boxes(matrices, np.array([boxes[instance.mesh] for instance in found]))
-            good_rows = rows[has_box][good]
-            self._corners[0, good_rows], self._corners[1, good_rows] = lows[good], highs[good]
+        of_mesh = np.array([np.full((2, 3), np.nan) if box is None else box for box in boxes]).reshape(-1, 2, 3)
+        for start in range(0, len(rows), _AT_ONCE):
+            part = rows[start : start + _AT_ONCE]
+            some = [instances[row] for row in part.tolist()]
+            matrices = np.array([instance.matrix for instance in some], np.float64)
+            lows, highs, good = placed_boxes(matrices, of_mesh[column(some, "mesh", np.int64)])
+            self._corners[0, part] = np.where(good[:, None], lows, np.inf)
+            self._corners[1, part] = np.where(good[:, None], highs, -np.inf)
         self._instances, self._boxes = list(instances), boxes
         low, high = self._corners
         return low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf)
 
 
-def _moved(instance: Instance, origin: np.ndarray) -> Instance:
-    return dataclasses.replace(instance, matrix=_shifted(instance.matrix, origin))
+def _moved(instances: list[Instance], origin: np.ndarray) -> list[Instance]:
+    """Instances counted from the origin."""
+    if not instances:
+        return []
+    matrices = _shifted(np.array([instance.matrix for instance in instances], np.float64), origin)
+    others = map(_OTHERS, instances)
+    return [
+        Instance(before.mesh, matrix, *rest) for before, matrix, rest in zip(instances, matrices, others, strict=True)
+    ]
 
 
 def _cell(place: np.ndarray) -> np.ndarray:

@@ -320,7 +320,7 @@ class Geometry(BufferSet):
             np.searchsorted(used, mesh_of),
             placements,
             self.placed.determinants[chosen] < 0.0,
-            self.placed.inverses[chosen],
+            self.placed.matrices[chosen],
             entries[chosen],
             first_materials[chosen],
             self.placed.boxes[chosen],

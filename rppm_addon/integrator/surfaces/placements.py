@@ -57,8 +57,6 @@ class PlacedArrays:
     def __init__(self) -> None:
         self.matrices = np.zeros((0, 4, 4))
         """(n, 4, 4) float64, object to world."""
-        self.inverses = np.zeros((0, 3, 4))
-        """(n, 3, 4) upper rows of the inverse matrices; 0 where there are none."""
         self.determinants = np.zeros(0)
         """(n,) of the matrices: negative where one mirrors."""
         self.boxes = np.zeros((0, 2, 3))
@@ -81,7 +79,7 @@ class PlacedArrays:
         self.matrices = matrices
         if changed is None:
             count = len(matrices)
-            self.inverses, self.rows = np.zeros((count, 3, 4)), np.zeros((count, 3, 4), np.float32)
+            self.rows = np.zeros((count, 3, 4), np.float32)
             self.determinants, self.is_near = np.zeros(count), np.zeros(count, bool)
             self.boxes, self.pivots = np.zeros((count, 2, 3)), np.zeros((count, 3), np.float32)
             self.versions = np.zeros(count, np.int64)
@@ -95,12 +93,11 @@ class PlacedArrays:
         matrices, boxes = self.matrices[chosen], boxes[chosen]
         self.versions[chosen] = self.version
         with np.errstate(invalid="ignore", over="ignore"):
-            self.inverses[chosen] = affine_inverses(matrices)
             self.determinants[chosen] = determinants(matrices)
         self.boxes[chosen, 0], self.boxes[chosen, 1], self.is_near[chosen] = placed_boxes(matrices, boxes)
         placed = matrices[:, :3]
         if has_pivots:
-            pivots = _pivots(matrices, self.inverses[chosen], boxes)
+            pivots = _pivots(matrices, boxes)
             self.pivots[chosen] = pivots
             placed = placed.copy()
             placed[:, :, 3] += np.einsum("nij,nj->ni", matrices[:, :3, :3], pivots)
@@ -124,13 +121,15 @@ def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, n
     return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
 
 
-def _pivots(matrices: np.ndarray, inverses: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:
     """(n, 3) float32 points in object space from which the vertices of placed meshes are counted as they are gathered.
 
     Maps and scans often have their place in their vertices instead of in their matrices (n, 4, 4): what these add then
     is large, and of the opposite sign. So where the boxes of meshes (n, 2, 3) reach far, vertices are counted from that
-    place in the box which lies nearest to the origin; elsewhere from 0. ``inverses``: (n, 3, 4) of the matrices.
+    place in the box which lies nearest to the origin; elsewhere from 0.
     """
+    with np.errstate(invalid="ignore", over="ignore"):
+        inverses = affine_inverses(matrices)
     nearest = np.clip(inverses[:, :, 3], boxes[:, 0], boxes[:, 1])
     reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), np.abs(boxes).max(axis=1)).max(axis=1)
     return np.where(reach[:, None] > _FAR_VERTICES, nearest, 0.0).astype(np.float32)

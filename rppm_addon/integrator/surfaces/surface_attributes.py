@@ -115,7 +115,7 @@ class SurfaceAttributes(BufferSet):
         for part in runs(rows, _AT_ONCE):
             records = SHADING_INSTANCE.zeros(len(part))
             chosen = slice(int(part[0]), int(part[-1]) + 1)
-            _fill(records, instances[chosen], placed.matrices[chosen], placed.inverses[chosen], meshes)
+            _fill(records, instances[chosen], placed.matrices[chosen], meshes)
             self.has_terminators |= any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
             self._instances.write(records, int(part[0]) * SHADING_INSTANCE.size)
         if not instances:
@@ -156,10 +156,8 @@ class SurfaceAttributes(BufferSet):
         self._sources = sources
 
 
-def _fill(
-    records: np.ndarray, instances: list[Instance], matrices: np.ndarray, inverses: np.ndarray, meshes: list[Mesh]
-) -> None:
-    """Fill in records of instances, whose matrices (n, 4, 4) and inverses (n, 3, 4) are these."""
+def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, meshes: list[Mesh]) -> None:
+    """Fill in records of instances, whose matrices (n, 4, 4) are these."""
     which = np.array([instance.mesh for instance in instances])
     used = np.unique(which)
     place = np.searchsorted(used, which)
@@ -167,6 +165,8 @@ def _fill(
     records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
     records["shape"] = np.array([_SHAPES[meshes[index].shape] for index in used])[place]
     records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
+    with np.errstate(invalid="ignore", over="ignore"):
+        inverses = affine_inverses(matrices)
     for row in range(3):
         records[f"to_object{row}"] = inverses[:, row]
     records["location"] = matrices[:, :3, 3]
