@@ -13,7 +13,7 @@ _REST = np.uint32(0xFFFFFFF0)
 _SMALLEST = 4096
 """Instances up to which all are sorted anew, which takes no longer than to find out who has moved."""
 _MOVING = 16
-"""Of so many instances one may move before all are sorted anew."""
+"""Number of instances of which one may move before all are sorted anew."""
 
 
 class TopLevel:

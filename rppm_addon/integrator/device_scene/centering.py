@@ -124,7 +124,7 @@ class SceneBounds:
         """Bounds of positions by their id, and the positions."""
         self._instances: list[Instance] = []
         self._boxes: list[Any] = []
-        """Of each mesh of the scene before, the same object as long as its positions are; None without points."""
+        """Bounds of the meshes of the scene before, the same objects as long as the positions are; None without any."""
         self._corners = np.zeros((2, 0, 3))
         """(2, instances, 3) low and high, meters; infinite, and the wrong way round, without points."""
 

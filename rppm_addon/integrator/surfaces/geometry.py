@@ -90,7 +90,7 @@ class _PlacedOf:
     meshes: list[Mesh]
     """All that the scene's instances have."""
     bounds: list[tuple[np.ndarray, np.ndarray] | None]
-    """Of each mesh, the same object as long as its positions are."""
+    """Bounds of the meshes, the same objects as long as their positions are."""
     which: np.ndarray
     """(n,) the mesh of each instance, by its place in ``meshes``."""
     has_pivots: bool
@@ -140,7 +140,7 @@ class Geometry(BufferSet):
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
         self.columns = InstanceColumns()
-        """Of all instances of the scene, those without triangles included."""
+        """Columns of all instances of the scene, those without triangles included."""
         self.placements = Placements([], np.zeros(0, np.int64))
         self.placed = PlacedArrays()
         """Arrays of the placements."""
