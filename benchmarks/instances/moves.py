@@ -11,6 +11,7 @@ import numpy as np
 
 import rppm_addon
 from rppm_addon.blender.export import export_scene
+from rppm_addon.commands.saved_scene import camera_at_resolution
 from rppm_addon.gl.context.context import Context
 from rppm_addon.gl.programs.programs import ProgramLibrary
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
@@ -19,6 +20,7 @@ from rppm_addon.scene import Instancing, Scene
 from rppm_addon.scene.storage.storage import load_scene
 
 FRAMES = 24
+_SIZE = 160, 90
 _STEP = 0.01
 """Meters from frame to frame."""
 
@@ -55,7 +57,9 @@ def moving_member(scene: Scene) -> int:
 
 def measure(scene: Scene, instancing: Instancing, frames: int = FRAMES) -> list[float]:
     """Processor seconds of the update of each frame; the first frame's object has not moved before."""
-    scene = dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, instancing=instancing, passes=()))
+    settings = dataclasses.replace(scene.settings, instancing=instancing, passes=())
+    camera = camera_at_resolution(dataclasses.replace(scene.camera, crop=None), *_SIZE)
+    scene = dataclasses.replace(scene, settings=settings, camera=camera)
     member = moving_member(scene)
     context = Context.create()
     library = ProgramLibrary(context)

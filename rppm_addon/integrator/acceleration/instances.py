@@ -60,6 +60,19 @@ class HitPaths(enum.Enum):
     SUBSURFACE = "subsurface"
 
 
+@dataclass(frozen=True)
+class HitPlaces:
+    """Places for the triangles that paths hit, behind those of the world triangles."""
+
+    first_triangle: int
+    """Number of the first hit triangle."""
+    count: int
+    origins: moderngl.Buffer
+    """The block HitOrigins."""
+    of_paths: dict[HitPaths, int]
+    """The first hit triangle of each list of paths, counted from first_triangle."""
+
+
 class TriangleSources:
     """Meshes and places that triangles on the device are made of: equal to others of which the same ones are made."""
 
@@ -83,18 +96,6 @@ def _arrays_of(mesh: Mesh) -> tuple[np.ndarray | None, ...]:
         mesh.positions, mesh.corner_vertices, mesh.triangle_corners, mesh.corner_normals, mesh.corner_uv,
         mesh.triangle_slots,
     )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class HitPlaces:
-    """Places of the triangles that paths hit on instances that are not expanded."""
-
-    first_triangle: int
-    triangle_count: int
-    origins: moderngl.Buffer
-    """HitOrigins."""
-    first_of: dict[HitPaths, int]
-    """The first hit triangle of each list of paths, counted from ``first_triangle``."""
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,7 @@ class InstancedMeshes:
     """Number of the build that these are of, among those of their geometry."""
     world: TriangleSources
     hits: HitPlaces
+    """Places of the triangles that paths hit."""
     gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
     """Makes world triangles of the hits (HIT) of active paths of a list, by the acceleration structure's blocks."""
 

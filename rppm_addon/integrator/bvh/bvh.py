@@ -101,7 +101,7 @@ class Bvh(AccelerationStructure):
         state = TOP_LEVEL.zeros(1)
         state["root"] = first_moving if len(top.moving) else first_rest
         state["first_hit_triangle"] = instanced.hits.first_triangle
-        state["hit_triangle_count"] = instanced.hits.triangle_count
+        state["hit_triangle_count"] = instanced.hits.count
         self._top_level.upload(state)
 
     @property

@@ -105,7 +105,7 @@ class CubemapLevels(BufferSet):
         self._instances.upload(records if len(records) else BOTTOM_LEVEL_INSTANCE.zeros(1))
         level = TOP_LEVEL.zeros(1)
         level["first_hit_triangle"] = instanced.hits.first_triangle
-        level["hit_triangle_count"] = instanced.hits.triangle_count
+        level["hit_triangle_count"] = instanced.hits.count
         self._top_level.upload(level)
         return world
 

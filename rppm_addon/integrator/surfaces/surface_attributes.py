@@ -85,6 +85,8 @@ class SurfaceAttributes(BufferSet):
         self.count = 0
         self.has_terminators = False
         """Whether any instance has an offset of its shadow terminator."""
+        self._have_terminators = np.zeros(0, bool)
+        """(instances,) those that have one."""
         self._meshes: list[Mesh] = []
         self._written: list[Instance] = []
         """Meshes and instances of the records on the device."""
@@ -106,20 +108,21 @@ class SurfaceAttributes(BufferSet):
         """Write the records of instances that are not the very objects of the last time at their places."""
         before, self._written = self._written, []  # should an upload fail
         is_new = self._instances.require_items(max(1, len(instances)))
-        # A record says where a mesh lies as well; and of those before nobody knows which had a terminator.
-        stays = not is_new and not self.has_terminators and same_members(meshes, self._meshes)
+        stays = not is_new and same_members(meshes, self._meshes)  # whose box a record has as well
         rows = np.arange(len(instances))
         if stays and len(before) == len(instances):
             rows = changed_members(before, instances)
-        self.has_terminators = False
+        else:
+            self._have_terminators = np.zeros(len(instances), bool)
         for part in runs(rows, _AT_ONCE):
             records = SHADING_INSTANCE.zeros(len(part))
             chosen = slice(int(part[0]), int(part[-1]) + 1)
             _fill(records, instances[chosen], placed.matrices[chosen], meshes)
-            self.has_terminators |= any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
+            self._have_terminators[chosen] = (records["terminator_offset"] > 0) | (records["terminator_flags"] > 0)
             self._instances.write(records, int(part[0]) * SHADING_INSTANCE.size)
         if not instances:
             self._instances.write(SHADING_INSTANCE.zeros(1))
+        self.has_terminators = bool(self._have_terminators.any())
         self._meshes, self._written = list(meshes), list(instances)
 
     def _upload_values(

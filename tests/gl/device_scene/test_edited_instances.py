@@ -77,6 +77,8 @@ EDITS: dict[str, Callable[[Scene], Scene]] = {
     "one has another mesh": lambda scene: edited(scene, 12, mesh=scene.instances[-12].mesh ^ 1),
     "one has another material": lambda scene: edited(scene, 5, materials=[1]),
     "one is not seen": lambda scene: edited(scene, 5, visibility=RayVisibility.ALL & ~RayVisibility.CAMERA),
+    "one has a softer terminator": lambda scene: edited(scene, 5, terminator_geometry_offset=0.3),
+    "it has none again": lambda scene: edited(scene, 5, terminator_geometry_offset=0.0),
     "a mesh is replaced": with_another_leaf,
     "some are deleted": without_some,
 }
