@@ -10,7 +10,7 @@ import numpy as np
 from ..integrator.density_estimation.radii import radius_in_pixels, shrinkage
 from ..integrator.lights.sources import photon_fractions
 from ..integrator.memory import Memory, expected_memory
-from ..scene import Camera, DensityEstimation, RenderSettings
+from ..scene import Camera, DensityEstimation, Instancing, RenderSettings
 from .reports import RenderKind, RenderReport
 
 
@@ -57,7 +57,8 @@ def memory_reading(settings: RenderSettings, width: int, height: int, report: Re
         rasterized = settings.density_estimation is DensityEstimation.RASTERIZED
         photons = settings.photons_for(width, height)
         segments, passes, noise = settings.photon_bounces + 1, settings.rendered_passes, settings.use_adaptive_sampling
-        return expected_memory(width, height, photons, segments, rasterized, passes, noise, in_viewport)
+        in_levels = settings.instancing is Instancing.TWO_LEVELS
+        return expected_memory(width, height, photons, segments, rasterized, passes, noise, in_viewport, in_levels)
 
     scene_bytes = None
     if report is not None:

@@ -10,6 +10,7 @@ from .common.stage_sizes import StageSizes, film_pixels
 from .common.viewport_demands import with_filtered
 from .density_estimation.density_estimator import ROUTES
 from .stage_set import expected_groups
+from .surfaces.hit_triangles import expected_hit_bytes
 from .viewport.pictures import expected_bytes
 
 PPM_BUFFERS = ("film", "gathered radiance", "photons")
@@ -85,6 +86,7 @@ def expected_memory(
     passes: Sequence[RenderPass] = passes_named(RenderSettings.passes),
     measures_noise: bool = False,
     in_viewport: bool = False,
+    in_two_levels: bool = False,
 ) -> Memory:
     """The buffers whose size follows from the settings, known before anything is rendered.
 
@@ -92,6 +94,7 @@ def expected_memory(
     passes: those that are rendered.
     measures_noise: whether there is a noise threshold.
     in_viewport: whether a viewport shows the pictures, which it filters and moves.
+    in_two_levels: whether rays place instances in the world, and paths have places for what they hit.
     What the scene takes is missing: geometry, textures, lights, deep cubemap, and lists as long as photons are stored.
     """
     kept = with_filtered(tuple(passes)) if in_viewport else tuple(passes)
@@ -99,6 +102,8 @@ def expected_memory(
     groups = expected_groups(sizes)
     if in_viewport:
         groups["viewport"] = expected_bytes(sizes)
+    if in_two_levels:
+        groups["scene"] = groups.get("scene", {}) | expected_hit_bytes(sizes)
     route = DensityEstimation.RASTERIZED if rasterized else DensityEstimation.GRID
     groups["density estimation"] |= ROUTES[route].expected_bytes(sizes)
     return compute_memory(groups, film_pixels(sizes), photons, segments)

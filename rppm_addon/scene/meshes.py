@@ -254,24 +254,48 @@ class InstanceArray:
     def __len__(self) -> int:
         return len(self.places)
 
-    def instances(self) -> list[Instance]:
-        """The instances one by one, the same objects at each call."""
+    def instances(self, before: "InstanceArray | None" = None) -> list[Instance]:
+        """The instances one by one, the same objects at each call. ``before``: an array with whose instances this one
+        shares those that say the same, bit for bit."""
         known = _expanded.get(self)
         if known is None:
-            known = _expanded[self] = self._expand()
+            known = _expanded[self] = self._expand(before)
         return known
 
-    def _expand(self) -> list[Instance]:
-        shared, count = self.first, len(self)
-        matrices = np.zeros((count, 4, 4))
-        matrices[:, :3] = self.matrices
+    def _expand(self, before: "InstanceArray | None") -> list[Instance]:
+        known = None if before is None or not self._is_like(before) else _expanded.get(before)
+        if known is None or before is None:
+            return self._made(slice(None))
+        differs = _differing_rows(self.matrices, before.matrices) | _differing_rows(self.randoms, before.randoms)
+        for name, values in self.attributes.items():
+            differs |= _differing_rows(values, before.attributes[name])
+        rows, instances = np.flatnonzero(differs), list(known)
+        for row, instance in zip(rows.tolist(), self._made(rows), strict=True):
+            instances[row] = instance
+        return instances
+
+    def _is_like(self, other: "InstanceArray") -> bool:
+        """True where arrays have as many instances, and these share the same, without particles."""
+        return (
+            len(self) == len(other)
+            and self.particles is other.particles is None
+            and self.attributes.keys() == other.attributes.keys()
+            and repr(_shared_members(self.first)) == repr(_shared_members(other.first))
+        )
+
+    def _made(self, rows: np.ndarray | slice) -> list[Instance]:
+        """New instances of rows."""
+        randoms = self.randoms[rows]
+        matrices = np.zeros((len(randoms), 4, 4))
+        matrices[:, :3] = self.matrices[rows]
         matrices[:, 3, 3] = 1.0
-        particles = [None] * count if self.particles is None else self.particles.particles()
+        shared, count = self.first, len(randoms)
+        particles = [None] * count if self.particles is None else self.particles.rows(rows).particles()
         attributes = [shared.attributes] * count
         if self.attributes:
-            columns = [list(map(tuple, column.tolist())) for column in self.attributes.values()]
-            rows = zip(*columns, strict=True)
-            attributes = [shared.attributes | dict(zip(self.attributes, row, strict=True)) for row in rows]
+            columns = [list(map(tuple, column[rows].tolist())) for column in self.attributes.values()]
+            own = zip(*columns, strict=True)
+            attributes = [shared.attributes | dict(zip(self.attributes, row, strict=True)) for row in own]
         return [
             Instance(
                 shared.mesh,
@@ -292,9 +316,26 @@ class InstanceArray:
                 shared.terminator_shading_offset,
             )
             for matrix, random, particle, own_attributes in zip(
-                matrices, self.randoms.tolist(), particles, attributes, strict=True
+                matrices, randoms.tolist(), particles, attributes, strict=True
             )
         ]
+
+
+_OWN = {"matrix", "random", "particle"}
+"""Members that the instances of an array do not share."""
+
+
+def _shared_members(instance: Instance) -> list[object]:
+    return [getattr(instance, member.name) for member in dataclasses.fields(Instance) if member.name not in _OWN]
+
+
+def _differing_rows(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """(n,) bool, the rows of two arrays of n rows that differ in a bit; all where their types or widths do."""
+    if a.shape != b.shape or a.dtype != b.dtype:
+        return np.ones(len(a), bool)
+    bits = np.dtype(f"u{a.dtype.itemsize}")
+    x, y = (np.ascontiguousarray(array).view(bits).reshape(len(array), -1) for array in (a, b))
+    return np.asarray((x != y).any(axis=1))
 
 
 _expanded: weakref.WeakKeyDictionary[InstanceArray, list[Instance]] = weakref.WeakKeyDictionary()

@@ -2,6 +2,7 @@
 """The scene: everything a render needs."""
 
 import dataclasses
+import itertools
 import logging
 from dataclasses import dataclass, field
 
@@ -93,12 +94,13 @@ class Scene:
         return len(self.instances) + sum(map(len, self.instance_arrays))
 
     @collector_paused()
-    def expanded(self) -> "Scene":
+    def expanded(self, before: "Scene | None" = None) -> "Scene":
         """The scene with the instances of arrays among the others, each in its place, and without arrays; the scene
         itself where it has none.
 
-        Arrays that scenes share give them the same instances. Raises SceneError where two instances have one place, or
-        none is in one.
+        Arrays that scenes share give them the same instances. ``before``: a scene that was expanded, with which this
+        one shares further instances that say the same: those of arrays that follow each other alike in both.
+        Raises SceneError where two instances have one place, or none is in one.
         """
         if not self.instance_arrays:
             return self
@@ -112,7 +114,9 @@ class Scene:
             raise SceneError("two instances of arrays have the same place; export the scene again")
         instances: list[Instance] = [None] * count  # type: ignore[list-item]
         members = [(np.flatnonzero(is_free), self.instances)]
-        members += [(array.places, array.instances()) for array in self.instance_arrays]
+        arrays_before = [] if before is None else before.instance_arrays
+        pairs = itertools.zip_longest(self.instance_arrays, arrays_before[: len(self.instance_arrays)])
+        members += [(array.places, array.instances(old)) for array, old in pairs]
         for indices, placed in members:
             for index, instance in zip(indices.tolist(), placed, strict=True):
                 instances[index] = instance

@@ -18,16 +18,20 @@ SMALLEST = 64
 REMEDY = "simplify the scene"
 
 
-def refuse_large_block(context: Context, name: str, size: int, remedy: str, limit: int | None = None) -> None:
+def refuse_large_block(
+    context: Context, name: str, size: int, remedy: str, limit: int | None = None, item_size: int = 1
+) -> None:
     """Raise DeviceError, with the numbers and the remedy, for more bytes than the device allows in one buffer.
 
-    limit: those, where these are not what a storage block may span.
+    limit: those, where these are not what a storage block may span. item_size: bytes of an item, where the error is to
+    say how many have room.
     """
     limit = context.storage_block_limit if limit is None else limit
     if size > limit:
+        room = f", room for {limit // item_size:,} of {size // item_size:,}," if item_size > 1 else ""
         raise DeviceError(
             f"{name} needs {size / 2**20:.0f} MiB but the device {context.information.name} "
-            f"allows {limit / 2**20:.0f} MiB in one buffer; {remedy}"
+            f"allows {limit / 2**20:.0f} MiB{room} in one buffer; {remedy}"
         )
 
 
@@ -116,7 +120,7 @@ class GrowingBuffer:
     def refuse_items(self, count: int) -> None:
         """Raise DeviceError for more items than the device allows, before there are any."""
         size = self._header_size + self.item_size * count
-        refuse_large_block(self._context, self.name, size, self.remedy, self.limit)
+        refuse_large_block(self._context, self.name, size, self.remedy, self.limit, self.item_size)
 
     def require_items(self, count: int) -> bool:
         """Make sure of so many items; returns and raises as require does."""
@@ -149,7 +153,7 @@ class GrowingBuffer:
         """
         if size <= self.size:
             return False
-        refuse_large_block(self._context, self.name, size, self.remedy, self.limit)
+        refuse_large_block(self._context, self.name, size, self.remedy, self.limit, self.item_size)
         available = self._context.available_memory
         if available is not None and size > available + self.size:
             raise DeviceError(

@@ -3,27 +3,73 @@
 
 import numpy as np
 
-from ..common.affine import determinants
+from ...gl.buffers.buffers import GrowingBuffer
+from ..common.affine import affine_inverses
 from .acceleration_structure import MARGIN
 from .instances import BOTTOM_LEVEL_INSTANCE, InstancedMeshes
 
+_AT_ONCE = 1 << 16
+"""Records that are made at a time, lest those of a million stand in memory at once."""
 
-def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float) -> np.ndarray:
-    """BOTTOM_LEVEL_INSTANCE records, at least one. roots: (n,) that of each instance; reach: how far from the world's
+
+class InstanceRecords:
+    """BOTTOM_LEVEL_INSTANCE records on the device, of which only those are written that have changed."""
+
+    def __init__(self) -> None:
+        self._instanced: InstancedMeshes | None = None
+        self._roots = np.zeros(0, np.int64)
+        self._reach = 0.0
+
+    def take(self, instanced: InstancedMeshes, roots: np.ndarray, reach: float) -> np.ndarray | None:
+        """Take instances; returns the rows that differ from those of the last time, or None where all may.
+
+        roots: (meshes,) those of the meshes' structures; reach: how far from the world's origin anything is, meters.
+        """
+        before, self._instanced = self._instanced, None  # until they are written
+        # A margin for half of the reach still leaves fifteen times the rounding error.
+        if before is None or not instanced.has_rows_of(before) or reach > 2.0 * self._reach:
+            stays = False
+        else:
+            stays = np.array_equal(self._roots, roots)
+        if stays:
+            return instanced.changed_since(before)  # type: ignore[arg-type]  # there is one
+        self._roots, self._reach = roots, reach
+        return None
+
+    def write(self, buffer: GrowingBuffer, instanced: InstancedMeshes, changed: np.ndarray | None) -> None:
+        """Write the records of rows, ascending, or of all, at least one. Raises DeviceError."""
+        count = len(instanced.which)
+        if buffer.require_items(max(count, 1)) or changed is None:
+            changed = np.arange(count)
+            if not count:
+                buffer.write(BOTTOM_LEVEL_INSTANCE.zeros(1))
+        for rows in runs(changed, _AT_ONCE):
+            records = instance_records(instanced, self._roots[instanced.which[rows]], self._reach, rows)
+            buffer.write(records, int(rows[0]) * BOTTOM_LEVEL_INSTANCE.size)
+        self._instanced = instanced
+
+
+def runs(rows: np.ndarray, most: int) -> list[np.ndarray]:
+    """Ascending rows, those together that follow each other, but no more than ``most``."""
+    ends = np.flatnonzero((np.diff(rows) != 1) | (np.arange(1, len(rows)) % most == 0)) + 1
+    return np.split(rows, ends) if len(rows) else []
+
+
+def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float, rows: np.ndarray) -> np.ndarray:
+    """BOTTOM_LEVEL_INSTANCE records of rows of instances. roots: (n,) those of these; reach: how far from the world's
     origin anything is, meters."""
-    records = BOTTOM_LEVEL_INSTANCE.zeros(max(len(instanced.which), 1))
-    if not len(instanced.which):
-        return records
+    records = BOTTOM_LEVEL_INSTANCE.zeros(len(rows))
+    with np.errstate(invalid="ignore", over="ignore"):
+        inverses, entries = affine_inverses(instanced.matrices[rows]), instanced.entries[rows]
     for row in range(3):
-        records[f"to_object{row}"] = instanced.inverses[:, row]
-        records[f"row{row}"] = instanced.entries[f"row{row}"]
+        records[f"to_object{row}"] = inverses[:, row]
+        records[f"row{row}"] = entries[f"row{row}"]
     for name in ("pivot", "set_code"):
-        records[name] = instanced.entries[name]
-    records["first_triangle"] = instanced.mesh_first_triangles[instanced.which]
+        records[name] = entries[name]
+    records["first_triangle"] = instanced.mesh_first_triangles[instanced.which[rows]]
     records["root"] = roots
-    records["placement"] = instanced.placements
-    records["mirrored"] = determinants(instanced.matrices) < 0.0
+    records["placement"] = instanced.placements[rows]
+    records["mirrored"] = instanced.are_mirrored[rows]
     # Rounding of a ray's origin, and of the vertices in the world.
-    scales = np.linalg.norm(instanced.inverses[:, :, :3], axis=(1, 2))
-    records["margin"] = MARGIN * reach * scales
+    records["margin"] = MARGIN * reach * np.linalg.norm(inverses[:, :, :3], axis=(1, 2))
     return records

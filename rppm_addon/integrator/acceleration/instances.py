@@ -60,6 +60,19 @@ class HitPaths(enum.Enum):
     SUBSURFACE = "subsurface"
 
 
+@dataclass(frozen=True)
+class HitPlaces:
+    """Places for the triangles that paths hit, behind those of the world triangles."""
+
+    first_triangle: int
+    """Number of the first hit triangle."""
+    count: int
+    origins: moderngl.Buffer
+    """The block HitOrigins."""
+    of_paths: dict[HitPaths, int]
+    """The first hit triangle of each list of paths, counted from first_triangle."""
+
+
 class TriangleSources:
     """Meshes and places that triangles on the device are made of: equal to others of which the same ones are made."""
 
@@ -96,24 +109,37 @@ class InstancedMeshes:
     """(n,) int64, the mesh of each instance, by its place in ``meshes``."""
     placements: np.ndarray
     """(n,) int64, the number of each among all instances."""
+    are_mirrored: np.ndarray
+    """(n,) bool, those whose matrix mirrors."""
     matrices: np.ndarray
     """(n, 4, 4) float64, object to world."""
-    inverses: np.ndarray
-    """(n, 3, 4) float64, the upper rows of the inverse matrices."""
     entries: np.ndarray
     """(n,) records with row0, row1, row2, pivot and set_code, as the triangles of expanded instances are placed by."""
     first_materials: np.ndarray
     """(n,) uint32, the material of the first slot of each."""
     boxes: np.ndarray
     """(n, 2, 3) float64, low and high corners in the world, meters."""
+    versions: np.ndarray
+    """(n,) int64, the ``version`` since which each is as it is."""
+    version: int
+    """Number of the build that these are of, among those of their geometry."""
     world: TriangleSources
-    first_hit_triangle: int
-    hit_triangle_count: int
-    hit_origins: moderngl.Buffer
-    first_hits: dict[HitPaths, int]
-    """The first hit triangle of each list of paths, counted from first_hit_triangle."""
+    hits: HitPlaces
+    """Places of the triangles that paths hit."""
     gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
     """Makes world triangles of the hits (HIT) of active paths of a list, by the acceleration structure's blocks."""
+
+    def has_rows_of(self, before: "InstancedMeshes") -> bool:
+        """True where the rows are those of the same instances, with the same meshes at the same places."""
+        return (
+            np.array_equal(self.placements, before.placements)
+            and np.array_equal(self.which, before.which)
+            and np.array_equal(self.mesh_first_triangles, before.mesh_first_triangles)
+        )
+
+    def changed_since(self, before: "InstancedMeshes") -> np.ndarray:
+        """(k,) the rows that are not as they were, ascending. ``before``: an earlier build of the same geometry."""
+        return np.flatnonzero(self.versions > before.version)
 
     @property
     def triangle_count(self) -> int:

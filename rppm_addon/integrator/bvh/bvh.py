@@ -16,11 +16,12 @@ from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.acceleration_structure import MARGIN, AccelerationStructure
-from ..acceleration.instance_records import instance_records
+from ..acceleration.instance_records import InstanceRecords
 from ..acceleration.instances import BOTTOM_LEVEL_INSTANCE, TOP_LEVEL, InstancedMeshes, TriangleSources
-from .bottom_levels import BottomLevels, moved_nodes, top_level_nodes
+from .bottom_levels import BottomLevels
 from .clustering import MAX_DEPTH, NODE
 from .leaves import LEAF, triangle_nodes
+from .top_level import TopLevel, placed_nodes
 
 Constants("BvhNodes", LEAF=LEAF, MAX_DEPTH=MAX_DEPTH)
 StorageBlock("BvhNodes", "BvhNode bvh_nodes[];")
@@ -41,7 +42,7 @@ class Bvh(AccelerationStructure):
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
-        self._bottom_levels = BottomLevels()
+        self._bottom_levels, self._top, self._records = BottomLevels(), TopLevel(), InstanceRecords()
         self._world_nodes = NODE.zeros(0)
         """Hierarchy of the world triangles beside instances."""
         self._world: TriangleSources | None = None
@@ -63,6 +64,7 @@ class Bvh(AccelerationStructure):
         margin = max(float(scene_radius), 1e-20) * MARGIN
         if instanced is None:
             self._bottom_levels, self._world_nodes, self._world = BottomLevels(), NODE.zeros(0), None
+            self._top, self._records = TopLevel(), InstanceRecords()
             nodes = triangle_nodes(_read_vertices(triangles, triangle_count), margin)
             self._nodes.require_items(len(nodes))
             self._nodes.write(nodes)
@@ -75,22 +77,31 @@ class Bvh(AccelerationStructure):
             self._world, self._world_margin, is_new = instanced.world, margin, True
         reach = float(scene_radius) + float(np.linalg.norm(np.fromiter(center, np.float64)))
         self._write_levels(instanced, margin, reach, is_new)
-        self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hit_origins, **self.blocks}
+        self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hits.origins, **self.blocks}
 
     def _write_levels(self, instanced: InstancedMeshes, margin: float, reach: float, is_new: bool) -> None:
         """Write the top level, and where those are new the hierarchies of the meshes and of the world triangles."""
-        levels = self._bottom_levels
+        levels, top = self._bottom_levels, self._top
+        changed = self._records.take(instanced, levels.roots, reach)
         first_world = levels.node_count
-        first_top = first_world + len(self._world_nodes)
-        top = top_level_nodes(self._world_nodes, first_world, margin, instanced)
-        if self._nodes.require_items(first_top + len(top)) or is_new:
+        first_rest = first_world + len(self._world_nodes)
+        is_sorted = top.take(self._world_nodes, margin, instanced, None if is_new else changed)
+        if self._nodes.require_items(first_rest + top.capacity) or is_new:
             self._nodes.write(levels.nodes())
-            self._nodes.write(moved_nodes(self._world_nodes, first_world), first_world * NODE.size)
-        self._nodes.write(top, first_top * NODE.size)
-        self._instances.upload(instance_records(instanced, levels.roots[instanced.which], reach))
+            self._nodes.write(placed_nodes(self._world_nodes, first_world), first_world * NODE.size)
+            is_sorted = True
+        if is_sorted:
+            self._nodes.write(top.placed_rest(first_rest, first_world), first_rest * NODE.size)
+        for node in top.emptied.tolist():
+            emptied = top.placed_rest(first_rest, first_world, slice(node, node + 1))
+            self._nodes.write(emptied, (first_rest + node) * NODE.size)
+        first_moving = first_rest + len(top.rest)
+        self._nodes.write(top.placed_moving(first_moving, first_rest), first_moving * NODE.size)
+        self._records.write(self._instances, instanced, changed)
         state = TOP_LEVEL.zeros(1)
-        state["root"], state["first_hit_triangle"] = first_top, instanced.first_hit_triangle
-        state["hit_triangle_count"] = instanced.hit_triangle_count
+        state["root"] = first_moving if len(top.moving) else first_rest
+        state["first_hit_triangle"] = instanced.hits.first_triangle
+        state["hit_triangle_count"] = instanced.hits.count
         self._top_level.upload(state)
 
     @property

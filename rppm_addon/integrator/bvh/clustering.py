@@ -110,14 +110,44 @@ def _mutually_nearest(
     """Pairs of clusters each of which shares the box of the least area with the other: the numbers of the first and
     of the second ones. There is one at least."""
     count = low.shape[1]
-    reach = min(_REACH if count > _FEW else _REACH_OF_FEW, count - 1)
-    partners = np.empty(count, np.int32)
-    of_block = functools.partial(_find_partners, low, high, reach, partners)
-    list(workers.map(of_block, range(0, count, _BLOCK)))
+    if count <= _FEW:
+        partners = _partners_of_few(low, high, min(_REACH_OF_FEW, count - 1))
+    else:
+        partners = np.empty(count, np.int32)
+        of_block = functools.partial(_find_partners, low, high, min(_REACH, count - 1), partners)
+        list(workers.map(of_block, range(0, count, _BLOCK)))
     numbers = np.arange(count, dtype=np.int32)
     first = np.flatnonzero((partners[partners] == numbers) & (numbers < partners))
     # Areas beyond the range of floats are equal to none.
     return (first, partners[first]) if len(first) else _next_in_line(count)
+
+
+def _partners_of_few(low: np.ndarray, high: np.ndarray, reach: int) -> np.ndarray:
+    """(n,) what _find_partners finds, for all distances at once: few clusters take no longer than a call of NumPy."""
+    count = low.shape[1]
+    numbers, distances = np.arange(count), np.arange(1, reach + 1)[:, None]
+    behind = numbers + distances
+    exists, behind = behind < count, np.minimum(behind, count - 1)
+    with np.errstate(over="ignore", invalid="ignore"):
+        x, y, z = (
+            np.maximum(ends[behind], ends) - np.minimum(starts[behind], starts)
+            for starts, ends in zip(low, high, strict=True)
+        )
+        areas = (y + z) * x + y * z
+    areas[~exists | np.isnan(areas)] = np.inf
+    # Of each distance the cluster behind and that before, in the order in which _find_partners looks at them.
+    candidates = np.full((reach, 2, count), np.inf, np.float32)
+    candidates[:, 0] = areas
+    for distance in range(1, reach + 1):
+        candidates[distance - 1, 1, distance:] = areas[distance - 1, : count - distance]
+    comes_first = (numbers // distances) & 1 == 0
+    candidates = np.where(comes_first[:, None], candidates, candidates[:, ::-1])
+    best = candidates.reshape(2 * reach, count).argmin(axis=0)
+    distance, is_second = best // 2 + 1, best % 2 == 1
+    is_behind = comes_first[distance - 1, numbers] != is_second
+    partners = np.where(is_behind, numbers + distance, numbers - distance)
+    has_any = candidates.reshape(2 * reach, count)[best, numbers] < np.inf
+    return np.where(has_any, partners, numbers).astype(np.int32)
 
 
 def _find_partners(low: np.ndarray, high: np.ndarray, reach: int, partners: np.ndarray, begin: int) -> None:

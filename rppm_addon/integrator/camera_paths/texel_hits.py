@@ -14,7 +14,7 @@ from ..common.records.rays import NO_TRIANGLE
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..density_estimation.stored_photons import CameraRaster
 from ..device_scene.stage_context import StageContext
-from ..surfaces.geometry import Placement
+from ..surfaces.placements import Placement
 from .camera_hits import CameraHits
 from .importons import Importons
 

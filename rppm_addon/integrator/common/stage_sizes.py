@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sizes and features of a scene that determine the lengths of the stages' buffers."""
 
+import itertools
+import operator
 from dataclasses import dataclass, field
 
 from ...materials.traits.subsurface import has_subsurface
@@ -55,7 +57,7 @@ class StageSizes:
             scene.photon_count,
             scene.settings.photon_bounces + 1,
             passes,
-            any(instance.shadow_catcher for instance in scene.instances),
+            any(map(operator.attrgetter("shadow_catcher"), scene.instances)),
             _first_camera_hits(scene.settings) if is_rasterized(scene.camera) else None,
             scene.camera.texels is not None,
             scene.settings.use_adaptive_sampling,
@@ -93,8 +95,9 @@ def _first_camera_hits(settings: RenderSettings) -> FirstCameraHits:
 
 
 def _links_lights(scene: Scene) -> bool:
+    linking = map(operator.attrgetter("linking"), scene.instances)
     return any(light.linking is not None or not light.casts_shadow for light in scene.lights) or any(
-        instance.linking is not None for instance in scene.instances
+        map(operator.is_not, linking, itertools.repeat(None))
     )
 
 

@@ -90,7 +90,8 @@ class CubemapLevels(BufferSet):
         parameters: the STATE that the build of world triangles begins with; reach: how far from the world's origin
         anything is, meters. Returns the STATE of the cubemap of world triangles. Raises DeviceError.
         """
-        records = instance_records(instanced, np.zeros(len(instanced.which), np.int64), reach)
+        every = np.arange(len(instanced.which))
+        records = instance_records(instanced, np.zeros(len(every), np.int64), reach, every)
         wanted = self._wanted_meshes(instanced, records, clusters)
         mesh_count = len(wanted)
         if instanced.world != self._world:
@@ -101,10 +102,10 @@ class CubemapLevels(BufferSet):
         states["first_triangle"] = [each.parameters["first_triangle"] for each in wanted.values()]
         world, top = states[mesh_count], self._build_top(builder, instanced, parameters)
         self._states.upload(np.concatenate([[world, top], states[:mesh_count]]).astype(STATE.dtype))
-        self._instances.upload(records)
+        self._instances.upload(records if len(records) else BOTTOM_LEVEL_INSTANCE.zeros(1))
         level = TOP_LEVEL.zeros(1)
-        level["first_hit_triangle"] = instanced.first_hit_triangle
-        level["hit_triangle_count"] = instanced.hit_triangle_count
+        level["first_hit_triangle"] = instanced.hits.first_triangle
+        level["hit_triangle_count"] = instanced.hits.count
         self._top_level.upload(level)
         return world
 

@@ -10,6 +10,7 @@ from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure as Kind
 from ..acceleration.acceleration_structure import AccelerationStructure
 from ..bvh.bvh import Bvh
+from ..common.instance_columns import InstanceColumns
 from ..common.require import require
 from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
@@ -50,10 +51,10 @@ class Acceleration:
             return asked
         return Kind.BVH if self._context.is_software else Kind.DEEP_CUBEMAP
 
-    def instanced_members(self, scene: Scene) -> np.ndarray | None:
+    def instanced_members(self, scene: Scene, columns: InstanceColumns) -> np.ndarray | None:
         """(instances,) bool, the instances of a scene that are not expanded to world triangles; None for none. A scene
-        with a shutter has the same ones at all of its moments."""
-        return instanced_members(scene, self._moved.follow(scene), self._context.is_software)
+        with a shutter has the same ones at all of its moments, of any of which the columns may be."""
+        return instanced_members(scene, columns, self._moved.follow(scene), self._context.is_software)
 
     def update(self, scene: Scene, geometry: Geometry, changes: Changes, center_tolerance: float = np.inf) -> None:
         """Build the structure where what it rests on has changed, or where it is not what the scene asks for.

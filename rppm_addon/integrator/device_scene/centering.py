@@ -8,6 +8,7 @@ the same bits in whatever order frames are rendered, and for a scene around the 
 """
 
 import dataclasses
+import operator
 from collections.abc import Callable
 from typing import Any
 
@@ -18,12 +19,21 @@ from ...scene.lights import Light, LightKind
 from ...scene.meshes import Instance
 from ...scene.motion import CameraMovement, Movement, Shutter
 from ...scene.scene import Scene
-from ..surfaces.geometry import finite_bounds, placed_boxes
+from ...scene.storage.sharing import changed_members, same_members
+from ..common.instance_columns import column
+from ..surfaces.geometry import finite_bounds
+from ..surfaces.placements import placed_boxes
 
 CELL = 256.0
 """Meters between places to count from: within half of it coordinates have steps of less than 8 micrometers."""
 _FARTHEST = 1e15
 """Meters from which on nothing is rendered (placed_boxes)."""
+
+
+_AT_ONCE = 1 << 15
+"""Instances that are looked at together."""
+_OTHERS = operator.attrgetter(*(member.name for member in dataclasses.fields(Instance)[2:]))
+"""All that an instance says but its mesh and its matrix, which come first."""
 
 
 class Centering:
@@ -33,8 +43,9 @@ class Centering:
         self._origin = np.zeros(3)
         self._made: dict[int, tuple[Any, Any]] = {}
         """Centered members by the id of the members they were made of, which these keep theirs."""
-        self._boxes: dict[int, tuple[np.ndarray, Any]] = {}
-        """Bounds of positions by their id, and the positions."""
+        self._instances: tuple[list[Instance], list[Instance]] = [], []
+        """Instances of the scene before, and the same centered."""
+        self._bounds = SceneBounds()
 
     def centered(self, scene: Scene) -> Scene:
         """The scene with its places counted from Scene.world_origin; itself where that is the world's origin.
@@ -43,17 +54,17 @@ class Centering:
         """
         origin = self._origin_of(scene)
         if not origin.any():
-            self._made = {}
+            self._made, self._instances = {}, ([], [])
             return scene
         if not np.array_equal(origin, self._origin):
-            self._origin, self._made = origin, {}
+            self._origin, self._made, self._instances = origin, {}, ([], [])
         before, self._made = self._made, {}
 
         def once(member: Any, make: Callable[[Any], Any]) -> Any:
             made = self._made[id(member)] = before.get(id(member)) or (member, make(member))
             return made[1]
 
-        def moved(member: Instance | Light) -> Instance | Light:
+        def moved(member: Light) -> Light:
             return dataclasses.replace(member, matrix=_shifted(member.matrix, origin))
 
         def shutter_of(shutter: Shutter | None) -> Shutter | None:
@@ -64,7 +75,7 @@ class Centering:
             scene,
             world_origin=scene.world_offset + origin,
             camera=once(scene.camera, lambda camera: _shifted_camera(camera, origin)),
-            instances=[once(instance, moved) for instance in scene.instances],
+            instances=self._centered_instances(scene.instances, origin),
             lights=[light if light.kind is LightKind.SUN else once(light, moved) for light in scene.lights],
             cubemap_center=None if center is None else once(center, lambda place: np.asarray(place) - origin),
             shutter=shutter_of(scene.shutter),
@@ -83,23 +94,77 @@ class Centering:
         place = np.asarray(matrix, np.float64)[:3, 3]
         if not (np.abs(place) < _FARTHEST).all() or not _cell(place).any():
             return np.zeros(3)
-        low, high = self._bounds_of(scene)
+        low, high = self._bounds.of(scene)
         return _cell(place if (low > high).any() else np.clip(place, low, high))
 
-    def _bounds_of(self, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    def _centered_instances(self, instances: list[Instance], origin: np.ndarray) -> list[Instance]:
+        """Instances counted from the origin: the same objects of those that had been in the scene before."""
+        before, made = self._instances
+        if same_members(before, instances):
+            return made
+        is_alike = len(before) == len(instances)
+        changed = changed_members(before, instances) if is_alike else np.arange(len(instances))
+        rows_before = changed if is_alike else np.arange(len(before))
+        known = {id(before[row]): made[row] for row in rows_before.tolist()}
+        made = list(made) if is_alike else list(instances)
+        new = [row for row in changed.tolist() if id(instances[row]) not in known]
+        for row in changed.tolist():
+            made[row] = known.get(id(instances[row]), made[row])
+        for row, moved in zip(new, _moved([instances[row] for row in new], origin), strict=True):
+            made[row] = moved
+        self._instances = list(instances), made
+        return made
+
+
+class SceneBounds:
+    """Bounds around the instances of scenes that follow each other; only those that are new are looked at."""
+
+    def __init__(self) -> None:
+        self._of_positions: dict[int, tuple[np.ndarray, Any]] = {}
+        """Bounds of positions by their id, and the positions."""
+        self._instances: list[Instance] = []
+        self._boxes: list[Any] = []
+        """Bounds of the meshes of the scene before, the same objects as long as the positions are; None without any."""
+        self._corners = np.zeros((2, 0, 3))
+        """(2, instances, 3) low and high, meters; infinite, and the wrong way round, without points."""
+
+    def of(self, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest coordinates of the instances, each (3,) meters; infinite without any."""
-        before, self._boxes = self._boxes, {}
-        boxes = []
-        for positions in (scene.meshes[instance.mesh].positions for instance in scene.instances):
-            if id(positions) not in self._boxes:
-                self._boxes[id(positions)] = before.get(id(positions)) or (positions, finite_bounds(positions))
-            boxes.append(self._boxes[id(positions)][1])
-        found = [index for index, box in enumerate(boxes) if box is not None]
-        if not found:
-            return np.full(3, np.inf), np.full(3, -np.inf)
-        matrices = np.array([scene.instances[index].matrix for index in found], np.float64)
-        lows, highs, good = placed_boxes(matrices, np.array([boxes[index] for index in found]))
-        return lows[good].min(axis=0, initial=np.inf), highs[good].max(axis=0, initial=-np.inf)
+        before, self._of_positions = self._of_positions, {}
+        for positions in (mesh.positions for mesh in scene.meshes):
+            key = id(positions)
+            if key not in self._of_positions:
+                self._of_positions[key] = before.get(key) or (positions, finite_bounds(positions))
+        boxes = [self._of_positions[id(mesh.positions)][1] for mesh in scene.meshes]
+        instances, count = scene.instances, len(scene.instances)
+        if len(self._instances) == count and same_members(self._boxes, boxes):
+            rows = changed_members(self._instances, instances)
+        else:
+            rows = np.arange(count)
+            self._corners = np.array([np.full((count, 3), np.inf), np.full((count, 3), -np.inf)])
+        self._instances = []  # should anything fail
+        of_mesh = np.array([np.full((2, 3), np.nan) if box is None else box for box in boxes]).reshape(-1, 2, 3)
+        for start in range(0, len(rows), _AT_ONCE):
+            part = rows[start : start + _AT_ONCE]
+            some = [instances[row] for row in part.tolist()]
+            matrices = np.array([instance.matrix for instance in some], np.float64)
+            lows, highs, good = placed_boxes(matrices, of_mesh[column(some, "mesh", np.int64)])
+            self._corners[0, part] = np.where(good[:, None], lows, np.inf)
+            self._corners[1, part] = np.where(good[:, None], highs, -np.inf)
+        self._instances, self._boxes = list(instances), boxes
+        low, high = self._corners
+        return low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf)
+
+
+def _moved(instances: list[Instance], origin: np.ndarray) -> list[Instance]:
+    """Instances counted from the origin."""
+    if not instances:
+        return []
+    matrices = _shifted(np.array([instance.matrix for instance in instances], np.float64), origin)
+    others = map(_OTHERS, instances)
+    return [
+        Instance(before.mesh, matrix, *rest) for before, matrix, rest in zip(instances, matrices, others, strict=True)
+    ]
 
 
 def _cell(place: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 """Init of Algorithm 1: a scene on the device, built anew where it has changed or moves."""
 
 import contextlib
+import functools
 import itertools
 from collections.abc import Iterator
 
@@ -90,6 +91,7 @@ class DeviceScene:
     def forget(self) -> None:
         """Have the next update build everything."""
         self._uploaded_scene = None
+        self.geometry.forget()
 
     def update(self, scene: Scene, center_tolerance: float = 0.0) -> None:
         """Take a scene; build only what rests on members that are not the very objects of the scene before.
@@ -174,7 +176,7 @@ class DeviceScene:
                 self.materials.default_material,
                 self._motion.swept,
                 self.materials.media.places.slots,
-                self.acceleration.instanced_members(self._motion.scene),
+                functools.partial(self.acceleration.instanced_members, self._motion.scene),
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):
@@ -209,8 +211,7 @@ class DeviceScene:
     def _placed_and_bounds(self) -> tuple[list[Instance], tuple[np.ndarray, np.ndarray]]:
         """The instances that have triangles, and the bounds of the scene, low and high, (3,) each."""
         geometry = self.geometry
-        placed = [placement.instance for placement in geometry.placements]
-        return placed, (geometry.bounds_low, geometry.bounds_high)
+        return geometry.placements.instances, (geometry.bounds_low, geometry.bounds_high)
 
     def _warn_of_media(self, scene: Scene) -> None:
         """Warn of media of which it is not clear where they are, or what shines on them."""

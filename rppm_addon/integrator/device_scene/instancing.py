@@ -10,7 +10,8 @@ from ...scene.meshes import Instance
 from ...scene.passes import DEEP_CUBEMAP, VECTOR
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
-from ...scene.storage.sharing import same_members
+from ...scene.storage.sharing import changed_members
+from ..common.instance_columns import InstanceColumns
 
 MANY_TRIANGLES = 1 << 18
 """Triangles of an expanded scene from which on AUTOMATIC instancing may have two levels: building a hierarchy of fewer
@@ -23,60 +24,62 @@ class MovedInstances:
     """Instances that have moved from scene to scene, or move while the shutter is open."""
 
     def __init__(self) -> None:
-        self._scene: Scene | None = None
-        self._moved: set[int] = set()
+        self._instances: list[Instance] = []
+        self._have_moved = np.zeros(0, bool)
+        """(instances,) those that have moved from scene to scene."""
 
     def follow(self, scene: Scene) -> np.ndarray:
         """Take a scene; returns (instances,) bool, those that moved, as far as the scenes had the same instances."""
-        before, self._scene = self._scene, scene
-        if before is None or len(before.instances) != len(scene.instances):
-            self._moved = set()
-        elif not same_members(before.instances, scene.instances):
-            pairs = zip(before.instances, scene.instances, strict=True)
-            self._moved |= {member for member, (old, new) in enumerate(pairs) if _has_moved(old, new)}
-        result = np.zeros(len(scene.instances), bool)
-        result[list(self._moved)] = True
+        before, self._instances = self._instances, list(scene.instances)
+        if len(before) != len(scene.instances):
+            self._have_moved = np.zeros(len(scene.instances), bool)
+        else:
+            rows = changed_members(before, scene.instances).tolist()
+            self._have_moved[[row for row in rows if _has_moved(before[row], scene.instances[row])]] = True
+        result = self._have_moved.copy()
         if scene.shutter is not None:
             result[[movement.member for movement in scene.shutter.instances]] = True
         return result
 
 
 def _has_moved(old: Instance, new: Instance) -> bool:
-    return old is not new and old.mesh == new.mesh and old.matrix.tobytes() != new.matrix.tobytes()
+    return old.mesh == new.mesh and old.matrix.tobytes() != new.matrix.tobytes()
 
 
-def instanced_members(scene: Scene, moved: np.ndarray, is_software: bool) -> np.ndarray | None:
+def instanced_members(
+    scene: Scene, columns: InstanceColumns, moved: np.ndarray, is_software: bool
+) -> np.ndarray | None:
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
     These are instances of meshes that occur more than once, or that move, and that keep their shape while the shutter
-    is open; their materials neither emit light nor fill the inside with a medium. moved: MovedInstances.follow.
-    is_software: whether the processor stands in for a GPU.
+    is open; their materials neither emit light nor fill the inside with a medium. columns: of the scene's instances, at
+    any moment; moved: MovedInstances.follow. is_software: whether the processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
     if wanted is Instancing.EXPANDED or not _may_have_two_levels(scene, is_software):
         return None
-    meshes = np.array([instance.mesh for instance in scene.instances], np.int64)
+    meshes = columns.meshes
     lengths = np.array([mesh.triangle_count for mesh in scene.meshes], np.int64)
     is_automatic, total = wanted is Instancing.AUTOMATIC, lengths[meshes].sum() if len(meshes) else 0
     if not total or (is_automatic and total < MANY_TRIANGLES):
         return None
-    may_be = _may_be_instanced(scene, meshes)
+    may_be = _may_be_instanced(scene, columns)
     counts = np.bincount(meshes[may_be], minlength=len(scene.meshes))
     shared = may_be & (counts[meshes] > 1)
     if is_automatic:
-        left = lengths[meshes[~shared]].sum() + lengths[np.unique(meshes[shared])].sum()
+        left = lengths[meshes[~shared]].sum() + lengths[counts > 1].sum()
         shared &= left <= _FRACTION_LEFT * total
     chosen = shared | (may_be & moved)
     return chosen if chosen.any() else None
 
 
-def _may_be_instanced(scene: Scene, meshes: np.ndarray) -> np.ndarray:
-    """(instances,) bool; meshes: (instances,) the mesh of each."""
+def _may_be_instanced(scene: Scene, columns: InstanceColumns) -> np.ndarray:
+    """(instances,) bool."""
     excluded = {index for index, material in enumerate(scene.materials) if _must_be_expanded(material)}
     bending = {deformation.mesh for deformation in scene.shutter.meshes} if scene.shutter is not None else set()
     whole = np.array([index not in bending and mesh.volume is None for index, mesh in enumerate(scene.meshes)])
-    plain = np.array([excluded.isdisjoint(instance.materials) for instance in scene.instances])
-    return whole[meshes] & plain
+    plain = np.array([excluded.isdisjoint(materials) for materials in columns.material_lists])
+    return whole[columns.meshes] & plain[columns.materials]
 
 
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:

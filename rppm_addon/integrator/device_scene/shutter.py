@@ -10,7 +10,8 @@ from ...scene.scene import Scene
 from ..common.iteration import Iteration
 from ..common.low_discrepancy import van_der_corput
 from ..common.require import require
-from ..surfaces.geometry import finite_bounds, placed_boxes
+from ..surfaces.geometry import finite_bounds
+from ..surfaces.placements import placed_boxes
 
 _MOMENTS = 17
 """Evenly over the time of the shutter: where what moves is looked for beforehand."""

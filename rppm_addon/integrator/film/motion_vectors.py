@@ -21,7 +21,8 @@ from ..common.iteration import Iteration
 from ..common.records.triangles import TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
-from ..surfaces.geometry import Geometry, Placement
+from ..surfaces.geometry import Geometry
+from ..surfaces.placements import Placements
 
 _CAMERAS = ("", "_before", "_after")
 Record(
@@ -46,7 +47,7 @@ class MotionVectors(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._context, self._library = context, library
-        self._uploaded: tuple[Shutter, list[Placement]] | None = None
+        self._uploaded: tuple[Shutter, Placements] | None = None
         """Shutter and placements of the scene whose triangles are uploaded, or None."""
         self._cameras: tuple[Camera, Camera] | None = None
         """Cameras of the previous frame and of the next one, or None."""

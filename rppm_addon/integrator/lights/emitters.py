@@ -22,7 +22,8 @@ from ..common.active_paths import ActivePaths, PathList
 from ..common.records.closures import CLOSURE
 from ..common.records.rays import HIT, NO_TRIANGLE, RAY
 from ..common.require import require
-from ..surfaces.geometry import Geometry, Placement, objects_of_most
+from ..surfaces.geometry import Geometry, objects_of_most
+from ..surfaces.placements import Placement
 from ..surfaces.resolve import Resolve
 from .light_links import NO_LINK, LightLinkTable
 from .light_records import EMISSIVE_TRIANGLE, EMITTER_LINK_SHIFT, LIGHT_NODE, EmitterTrait

@@ -13,7 +13,8 @@ from ...scene.errors import SceneError
 from ...scene.lights import UNLIMITED_BOUNCES
 from ...scene.meshes import RayVisibility
 from ...scene.scene import Scene
-from ..surfaces.geometry import Geometry, Placement
+from ..surfaces.geometry import Geometry
+from ..surfaces.placements import Placement
 from .environment import Environment
 from .light_entry import light_entry
 from .light_links import LightLinkTable

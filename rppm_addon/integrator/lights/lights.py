@@ -2,6 +2,7 @@
 """The lights of a scene on the device: their table, what chooses one of them, and how many photons each gets."""
 
 import math
+import operator
 from collections.abc import Mapping
 
 import moderngl
@@ -13,7 +14,7 @@ from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...materials.tables import MaterialTables
 from ...scene.lights import UNLIMITED_BOUNCES
-from ...scene.meshes import RayVisibility
+from ...scene.meshes import Instance, RayVisibility
 from ...scene.scene import Scene
 from ..common.require import require
 from ..surfaces.geometry import Geometry
@@ -64,9 +65,10 @@ _BOUNCED = RayVisibility.DIFFUSE | RayVisibility.GLOSSY | RayVisibility.TRANSMIS
 
 def shadows_are_of_all(scene: Scene) -> bool:
     """Whether shadow rays meet the same objects as rays that surfaces scatter, so that both find the same light."""
-    return all(
-        instance.visibility & _BOUNCED == _BOUNCED and not instance.shadow_catcher for instance in scene.instances
-    )
+    instances = scene.instances
+    seen = np.fromiter(map(operator.attrgetter("visibility"), instances), np.int64, len(instances))
+    meet_all = bool((seen & int(_BOUNCED) == int(_BOUNCED)).all())
+    return meet_all and not any(map(operator.attrgetter("shadow_catcher"), instances))
 
 
 class Lights(BufferSet):
@@ -202,7 +204,7 @@ class Lights(BufferSet):
         self.target_count = len(targets)
         self.targets.upload(targets if len(targets) else np.zeros(4, np.float32))
         self._triangles = geometry.triangles.buffer
-        self._list_groups(scene, [*lights.groups, *(placed.instance.light_group for placed in geometry.placements)])
+        self._list_groups(scene, lights.groups, geometry.placements.instances)
         self.links.upload(lights.links.records)
         sets = lights.links.records["light_sets"]
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
@@ -255,11 +257,12 @@ class Lights(BufferSet):
             "world_bounces": UNLIMITED_BOUNCES if self.environment.is_even else scene.world.max_bounces,
         }
 
-    def _list_groups(self, scene: Scene, names: list[str]) -> None:
-        """names: of the light groups of the lights and the instances."""
+    def _list_groups(self, scene: Scene, of_lights: list[str], placed: list[Instance]) -> None:
+        """of_lights: names of the light groups of the lights; placed: instances, which have names as well."""
         numbers = {name: number for number, name in enumerate(scene.settings.light_groups)}
         self.world_group = numbers.get(scene.world.light_group, NO_LIGHT_GROUP)
         if numbers:
+            names = [*of_lights, *map(operator.attrgetter("light_group"), placed)]
             self.group_table.upload(np.array([numbers.get(name, NO_LIGHT_GROUP) for name in names], np.uint32))
         else:
             self.group_table.release()

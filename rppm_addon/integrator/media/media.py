@@ -19,7 +19,8 @@ from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
 from ..photons.photons import Photons
-from ..surfaces.geometry import finite_bounds, placed_boxes
+from ..surfaces.geometry import finite_bounds
+from ..surfaces.placements import placed_boxes
 
 MEDIUM_BOX = Record("MediumBox", low="vec3", unused0="uint", high="vec3", unused1="uint")
 """Lowest and highest coordinates of surfaces with a medium inside, meters."""

@@ -15,7 +15,8 @@ from ...materials.tables import MaterialTables, first_line
 from ...scene.meshes import SMOOTH_NORMALS, Instance, Mesh
 from ...scene.scene import Scene
 from ..common.affine import determinants
-from .geometry import Geometry, Placement
+from .geometry import Geometry
+from .placements import Placement
 from .surface_attributes import SurfaceAttributes
 
 DISPLACED_VERTEX = Record(

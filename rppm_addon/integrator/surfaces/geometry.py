@@ -17,18 +17,18 @@ from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.errors import DeviceError, DeviceLostError
-from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..acceleration.instances import HitPaths, InstancedMeshes, TriangleSources
+from ...scene.storage.sharing import same_members
+from ..acceleration.instances import HitPaths, HitPlaces, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
-from ..common.affine import affine_inverses, determinants
+from ..common.instance_columns import InstanceColumns, numbered
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
-from ..common.require import require
 from ..common.stage_sizes import StageSizes
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
 from .hit_triangles import HitTriangles
 from .object_triangles import ObjectTriangles
+from .placements import PlacedArrays, Placements
 from .volume_insets import inset_matrix, volumes_alone
 
 log = logging.getLogger(__name__)
@@ -52,8 +52,6 @@ _STARTS = {
     "mesh_uv": "corner_uv",
 }
 """Members of InstanceEntry that are where a mesh's part of such an array begins."""
-_FAR_VERTICES = 128.0
-"""Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 _MOST_MATERIALS = 1 << 31
 """Numbers of materials where slots are given, all of which are known."""
 _BLOCK = 256
@@ -82,41 +80,34 @@ def _by_column(reduce: Callable[..., np.ndarray], positions: np.ndarray) -> np.n
     return reduce(np.concatenate(parts), axis=0)
 
 
-def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Boxes around placed boxes.
+@dataclass(frozen=True)
+class _PlacedOf:
+    """Instances that have triangles, and their meshes."""
 
-    matrices: (n, 4, 4); boxes: (n, 2, 3), low and high. Returns low and high, each (n, 3), and whether these are finite
-    and not too far away for triangles to be rendered, (n,).
-    """
-    middle, reach = matrices[:, :3, 3], np.zeros((len(matrices), 3))
-    centers, halves = 0.5 * (boxes[:, 0] + boxes[:, 1]), 0.5 * (boxes[:, 1] - boxes[:, 0])
-    with np.errstate(invalid="ignore", over="ignore"):
-        for axis in range(3):  # written out: thousands of products of small matrices take NumPy long
-            column = matrices[:, :3, axis]
-            middle = middle + column * centers[:, axis, None]
-            reach += np.abs(column) * halves[:, axis, None]
-        low, high = middle - reach, middle + reach
-    return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
+    instances: list[Instance]
+    chosen: np.ndarray
+    """(n,) their numbers among the instances of the scene, ascending."""
+    meshes: list[Mesh]
+    """All that the scene's instances have."""
+    bounds: list[tuple[np.ndarray, np.ndarray] | None]
+    """Bounds of the meshes, the same objects as long as their positions are."""
+    which: np.ndarray
+    """(n,) the mesh of each instance, by its place in ``meshes``."""
+    has_pivots: bool
+    """The scene is far from the world's origin."""
+    has_insets: bool
+    """Some are drawn together (volume_insets.py), which their matrices do not say."""
 
-
-def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-    """(n, 3) float32 points in object space from which the vertices of placed meshes are counted as they are gathered.
-
-    Maps and scans often have their place in their vertices instead of in their matrices (n, 4, 4): what these add then
-    is large, and of the opposite sign. So where the boxes of meshes (n, 2, 3) reach far, vertices are counted from that
-    place in the box which lies nearest to the origin; elsewhere from 0.
-    """
-    nearest = np.clip(affine_inverses(matrices)[:, :, 3], boxes[:, 0], boxes[:, 1])
-    reach = np.einsum("nij,nj->ni", np.abs(matrices[:, :3, :3]), np.abs(boxes).max(axis=1)).max(axis=1)
-    return np.where(reach[:, None] > _FAR_VERTICES, nearest, 0.0).astype(np.float32)
-
-
-@dataclass(slots=True)
-class Placement:
-    """An instance and its first world triangle, which it has where it is expanded to world triangles."""
-
-    instance: Instance
-    first_triangle: int
+    def keeps_rows(self, before: "_PlacedOf | None") -> bool:
+        """True where rows of instances that have not changed stay as they were made of those before."""
+        return (
+            before is not None
+            and not (self.has_insets or before.has_insets)
+            and self.has_pivots == before.has_pivots
+            and same_members(self.bounds, before.bounds)
+            and np.array_equal(self.chosen, before.chosen)
+            and np.array_equal(self.which, before.which)
+        )
 
 
 class Geometry(BufferSet):
@@ -124,8 +115,8 @@ class Geometry(BufferSet):
 
     ``triangles`` holds three vec4 a triangle (for the fourth components see shaders/surfaces/geometry/gather.comp),
     ``attributes`` a TriangleAttributes each;
-    ``placements`` lists the instances that have triangles; ``matrices`` (n, 4, 4) are theirs, and ``boxes`` (n, 2, 3)
-    what they lie in, low and high in meters, maybe not finite. ``bounds_low`` and ``bounds_high`` (3,) enclose them.
+    ``placements`` lists the instances that have triangles, ``placed`` what follows from their places.
+    ``bounds_low`` and ``bounds_high`` (3,) enclose them.
     """
 
     remedy = GatherInputs.remedy
@@ -134,7 +125,6 @@ class Geometry(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
-        self._context = context
         self._gather = library.compute("surfaces/geometry/gather.comp")
         self._inputs = self.own(GatherInputs(context, library))
         """No part of the set: other programs than those that gather do not read them."""
@@ -149,9 +139,24 @@ class Geometry(BufferSet):
         self.triangle_count = 0
         self.has_round_shapes = False
         """Whether any triangles stand for strands or points."""
-        self.placements: list[Placement] = []
-        self.matrices, self.boxes = np.zeros((0, 4, 4)), np.zeros((0, 2, 3))
+        self.columns = InstanceColumns()
+        """Columns of all instances of the scene, those without triangles included."""
+        self.placements = Placements([], np.zeros(0, np.int64))
+        self.placed = PlacedArrays()
+        """Arrays of the placements."""
+        self._placed_of: _PlacedOf | None = None
+        """Meshes and instances that the arrays of the placements are of; None where these are not known."""
         self.bounds_low = self.bounds_high = np.zeros(3)
+
+    @property
+    def matrices(self) -> np.ndarray:
+        """(n, 4, 4) float64 of the placements."""
+        return self.placed.matrices
+
+    @property
+    def boxes(self) -> np.ndarray:
+        """(n, 2, 3) float64 around the placements, meters."""
+        return self.placed.boxes
 
     @property
     def center(self) -> np.ndarray:
@@ -163,66 +168,43 @@ class Geometry(BufferSet):
         """Radius of the bounding sphere of the bounds, meters; never zero."""
         return max(0.5 * float(np.linalg.norm(self.bounds_high - self.bounds_low)), 1e-9)
 
+    def forget(self) -> None:
+        """Have the next build read all instances."""
+        self.columns = InstanceColumns()
+
     def build(
         self,
         scene: Scene,
         default_material: int,
         swept: tuple[np.ndarray, np.ndarray] | None = None,
         slots: list[Sequence[int]] | None = None,
-        is_instanced: np.ndarray | None = None,
+        instanced: Callable[[InstanceColumns], np.ndarray | None] | None = None,
     ) -> None:
         """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
         bounds enclose in any case, each (3,), low and high. ``slots``: the materials of the slots of each instance, in
-        place of its own. ``is_instanced``: (instances,) bool, those that are not expanded to world triangles; None for
-        none.
+        place of its own. ``instanced``: gives by the columns of all instances those, (instances,) bool, that are not
+        expanded to world triangles, or None for none.
 
         Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
-        instances only, bending a mesh its positions and normals. Whoever changes an array gives a new one.
+        instances only, bending a mesh its positions and normals. Instances that are the very objects of the last build
+        are not read again. Whoever changes an array or an instance gives a new one.
         Raises DeviceError when the device cannot hold them.
         """
-        used = sorted({instance.mesh for instance in scene.instances})
-        meshes = [scene.meshes[index] for index in used]
-        bounds = self._bounds_of(meshes)
-        places = {
-            index: place
-            for place, index in enumerate(used)
-            if bounds[place] is not None and meshes[place].triangle_count
-        }
-        chosen = [index for index, instance in enumerate(scene.instances) if instance.mesh in places]
-        instances = [scene.instances[index] for index in chosen]
-        which = np.array([places[instance.mesh] for instance in instances], np.int64)
-        self.matrices = np.array([instance.matrix for instance in instances], np.float64).reshape(-1, 4, 4)
-        for number in volumes_alone(instances, scene.materials):
-            box = np.array(require(bounds[which[number]]))
-            self.matrices[number] = inset_matrix(self.matrices[number], box, number)
+        of = self._place(scene)
+        meshes, chosen, which = of.meshes, of.chosen, of.which
         is_expanded = np.ones(len(chosen), bool)
+        is_instanced = instanced(self.columns) if instanced is not None else None
         if is_instanced is not None:  # rays go on in object space, which flat ones do not have
-            is_expanded = ~(is_instanced[chosen] & (determinants(self.matrices) != 0.0))
+            is_expanded = ~(is_instanced[chosen] & (self.placed.determinants != 0.0))
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which] * is_expanded
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
-        entries = INSTANCE_ENTRY.zeros(len(instances))
+        entries, slots_uploaded = self._entries(of, scene, slots, default_material)
         entries["first_triangle"] = ends - lengths
-        slot_materials: list[int] = []
-        if instances:
-            _locate(entries, meshes, which)
-            far_boxes = None
-            if scene.world_origin is not None:
-                far_boxes = np.array([bounds[place] for place in which.tolist()])
-            _place(entries, self.matrices, far_boxes)
-            is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in meshes])[which]
-            of_instances = (
-                [instance.materials for instance in instances] if slots is None else [slots[index] for index in chosen]
-            )
-            known = range(len(scene.materials)) if slots is None else range(_MOST_MATERIALS)
-            slot_materials = _fill(entries, instances, is_round, of_instances, known, default_material)
-        self.has_round_shapes = bool(instances) and bool(is_round.any())
-        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
-        self.placements = list(map(Placement, instances, entries["first_triangle"].tolist()))
-        self._enclose(boxes[which], swept)
+        self.placements = Placements(of.instances, entries["first_triangle"])
+        self._enclose(swept)
         self._inputs.upload_meshes(meshes)
         self._inputs.instances.upload(entries)
-        slots_uploaded = np.array(slot_materials or [default_material], np.uint32)
         self._inputs.slot_materials.upload(slots_uploaded)
         expanded = np.flatnonzero(is_expanded)
         placed_meshes = [meshes[index] for index in which[expanded].tolist()]
@@ -232,11 +214,63 @@ class Geometry(BufferSet):
         world = TriangleSources(placed_meshes, expanded, placed_by, slots_uploaded)
         first_materials = slots_uploaded[entries["first_slot"]]
         self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials, world)
-        is_new = self._require_triangles(instances, lengths)
+        is_new = self._require_triangles(of.instances, lengths)
         if is_new or world != before:
-            self._gather_triangles(len(instances))
+            self._gather_triangles(len(of.instances))
         self._objects.gather(self._inputs.blocks, self.triangles, is_new)
         self._world = world
+
+    def _place(self, scene: Scene) -> _PlacedOf:
+        """Take the instances of a scene that have triangles, and place them; returns what these are."""
+        before, self._placed_of = self._placed_of, None  # should anything fail
+        columns = self.columns
+        read = columns.follow(scene.instances)
+        used = np.flatnonzero(np.bincount(columns.meshes)).tolist()
+        meshes = [scene.meshes[index] for index in used]
+        bounds = self._bounds_of(meshes)
+        places = np.full(len(scene.meshes), -1)
+        for place, (index, mesh) in enumerate(zip(used, meshes, strict=True)):
+            if bounds[place] is not None and mesh.triangle_count:
+                places[index] = place
+        chosen = np.flatnonzero(places[columns.meshes] >= 0)
+        has_all = len(chosen) == len(scene.instances)
+        instances = list(scene.instances) if has_all else [scene.instances[index] for index in chosen.tolist()]
+        which = places[columns.meshes[chosen]]
+        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)[which]
+        insets = volumes_alone(columns.material_lists, scene.materials)
+        are_inset = np.flatnonzero(np.isin(columns.materials[chosen], insets)) if insets else np.zeros(0, np.int64)
+        matrices = columns.matrices if has_all and not len(are_inset) else columns.matrices[chosen]
+        for number in are_inset.tolist():
+            matrices[number] = inset_matrix(matrices[number], boxes[number], number)
+        has_pivots = scene.world_origin is not None
+        of = _PlacedOf(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
+        self.placed.take(matrices, boxes, has_pivots, _among(chosen, read) if of.keeps_rows(before) else None)
+        self._placed_of = of
+        return of
+
+    def _entries(
+        self, of: _PlacedOf, scene: Scene, slots: list[Sequence[int]] | None, default_material: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """INSTANCE_ENTRY records of the placements, whose first triangles are left out, and the materials of all slots,
+        uint32. ``slots``: as build takes them."""
+        entries = INSTANCE_ENTRY.zeros(len(of.chosen))
+        is_round = np.array([mesh.shape is not MeshShape.SURFACE for mesh in of.meshes], bool)[of.which]
+        self.has_round_shapes = bool(is_round.any())
+        if not len(entries):
+            return entries, np.array([default_material], np.uint32)
+        _locate(entries, of.meshes, of.which)
+        entries["pivot"] = self.placed.pivots
+        for row in range(3):
+            entries[f"row{row}"] = self.placed.rows[:, row]
+        columns = self.columns
+        entries["set_code"] = _set_codes(columns.visibility[of.chosen], columns.sets[of.chosen], is_round)
+        numbers, lists = columns.materials[of.chosen], columns.material_lists
+        if slots is not None:
+            known: dict[tuple[int, ...], int] = {}
+            numbers = numbered([slots[index] for index in of.chosen.tolist()], known)
+            lists = list(known)
+        materials = range(len(scene.materials)) if slots is None else range(_MOST_MATERIALS)
+        return entries, _place_slots(entries, numbers, lists, materials, default_material)
 
     def _gather_triangles(self, instance_count: int) -> None:
         """Gather the triangles of all that is expanded."""
@@ -271,26 +305,29 @@ class Geometry(BufferSet):
         self.instanced = None
         first = next_range(self.triangle_count)
         self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
-        used, one, mesh_of = np.unique(which[placements], return_index=True, return_inverse=True)
+        mesh_of = which[placements]
+        used = np.flatnonzero(np.bincount(mesh_of))
+        one = np.zeros(len(meshes), np.int64)
+        one[mesh_of[::-1]] = np.arange(len(mesh_of))[::-1]  # the first of each
         shared = [meshes[index] for index in used]
-        self._objects.place(next_range(first + self._hits.count), shared, entries[placements[one]])
+        self._objects.place(next_range(first + self._hits.count), shared, entries[placements[one[used]]])
         if not len(placements):
             return
+        chosen = _as_slice(placements)
         self.instanced = InstancedMeshes(
             shared,
             self._objects.first_triangles,
-            mesh_of.reshape(-1),
+            np.searchsorted(used, mesh_of),
             placements,
-            self.matrices[placements],
-            affine_inverses(self.matrices[placements]),
-            entries[placements],
-            first_materials[placements],
-            self.boxes[placements],
+            self.placed.determinants[chosen] < 0.0,
+            self.placed.matrices[chosen],
+            entries[chosen],
+            first_materials[chosen],
+            self.placed.boxes[chosen],
+            self.placed.versions[chosen],
+            self.placed.version,
             world,
-            self._hits.first,
-            self._hits.count,
-            self._hits.origins.buffer,
-            self._hits.first_hits,
+            HitPlaces(self._hits.first, self._hits.count, self._hits.origins.buffer, self._hits.first_hits),
             self._gather_hits,
         )
 
@@ -329,15 +366,15 @@ class Geometry(BufferSet):
                 self._bounds[id(positions)] = known.get(id(positions)) or (positions, finite_bounds(positions))
         return [self._bounds[id(mesh.positions)][1] for mesh in meshes]
 
-    def _enclose(self, boxes: np.ndarray, swept: tuple[np.ndarray, np.ndarray] | None) -> None:
-        """Find the boxes of the placements, whose meshes lie in boxes (n, 2, 3), and the bounds."""
+    def _enclose(self, swept: tuple[np.ndarray, np.ndarray] | None) -> None:
+        """Find the bounds around the placements."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
-        lows, highs, good = placed_boxes(self.matrices, boxes)
-        self.boxes = np.stack([lows, highs], axis=1)
-        low = np.minimum(low, lows[good].min(axis=0, initial=np.inf))
-        high = np.maximum(high, highs[good].max(axis=0, initial=-np.inf))
-        for index in np.flatnonzero(~good):
-            name = self.placements[index].instance.object_name
+        boxes, is_near = self.placed.boxes, self.placed.is_near
+        near = boxes if is_near.all() else boxes[is_near]
+        low = np.minimum(low, near[:, 0].min(axis=0, initial=np.inf))
+        high = np.maximum(high, near[:, 1].max(axis=0, initial=-np.inf))
+        for index in np.flatnonzero(~is_near):
+            name = self.placements.instances[index].object_name
             log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
@@ -359,48 +396,43 @@ def _locate(entries: np.ndarray, meshes: list[Mesh], which: np.ndarray) -> None:
     entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
 
 
-def _place(entries: np.ndarray, matrices: np.ndarray, far_boxes: np.ndarray | None) -> None:
-    """Fill in rows and pivots of entries. far_boxes: (n, 2, 3), those of the meshes where the scene is far from the
-    world's origin."""
-    if far_boxes is not None:
-        pivots = _pivots(matrices, far_boxes)
-        entries["pivot"] = pivots
-        matrices = matrices.copy()
-        matrices[:, :3, 3] += np.einsum("nij,nj->ni", matrices[:, :3, :3], pivots)
-    for row in range(3):
-        entries[f"row{row}"] = matrices[:, row]
-
-
-def _fill(
-    entries: np.ndarray,
-    instances: list[Instance],
-    is_round: np.ndarray,
-    slots_of_instances: Sequence[Sequence[int]],
-    known: range,
-    default_material: int,
-) -> list[int]:
-    """Sets, shadows and slots of entries; returns the materials of all slots, the same for instances alike.
-
-    is_round: (n,) bool, of which instances triangles stand for strands or points; slots_of_instances: materials of the
-    slots of each; those that are not among the ``known`` are the default material.
-    """
-    visibility = np.array([int(instance.visibility) for instance in instances])
+def _set_codes(visibility: np.ndarray, sets: np.ndarray, is_round: np.ndarray) -> np.ndarray:
+    """(n,) codes of shaders/common/light_sets.glsl. visibility: (n,) RayVisibility; sets: (n,) InstanceColumns.sets;
+    is_round: (n,) bool, of which instances triangles stand for strands or points."""
     shadowless = visibility & int(RayVisibility.SHADOW) == 0
-    sets = np.array([_packed_sets(instance.linking) for instance in instances]) + _ONE_SIDED * is_round
-    entries["set_code"] = np.where(shadowless, 1 + sets, -sets)  # shaders/common/light_sets.glsl
+    codes = sets + _ONE_SIDED * is_round
+    return np.where(shadowless, 1 + codes, -codes)
+
+
+def _place_slots(
+    entries: np.ndarray, numbers: np.ndarray, lists: Sequence[Sequence[int]], known: range, default_material: int
+) -> np.ndarray:
+    """Fill in the slots of entries; returns the materials of all slots, uint32, the same for instances alike.
+
+    numbers: (n,) of the list of materials that the slots of each have, among ``lists``; those that are not among the
+    ``known`` are the default material.
+    """
     slots: list[int] = []
-    ranges: dict[tuple[int, ...], tuple[int, int]] = {}
-    for key in map(tuple, slots_of_instances):
-        if key not in ranges:
-            ranges[key] = len(slots), max(1, len(key))
-            slots += [m if m in known else default_material for m in key] or [default_material]
-    chosen = [ranges[tuple(of_instance)] for of_instance in slots_of_instances]
-    entries["first_slot"], entries["slot_count"] = np.array(chosen, np.uint32).T
-    return slots
+    ranges = np.zeros((len(lists), 2), np.uint32)
+    for number in np.flatnonzero(np.bincount(numbers, minlength=len(lists))).tolist():
+        key = lists[number]
+        ranges[number] = len(slots), max(1, len(key))
+        slots += [m if m in known else default_material for m in key] or [default_material]
+    entries["first_slot"], entries["slot_count"] = ranges[:, 0][numbers], ranges[:, 1][numbers]
+    return np.array(slots, np.uint32)
 
 
-def _packed_sets(linking: LightLinking | None) -> int:
-    return 0 if linking is None else linking.receiver_light_set | linking.blocker_shadow_set << 6
+def _among(indices: np.ndarray, some: np.ndarray) -> np.ndarray:
+    """(n,) the places of those indices that are among some, both ascending."""
+    places = np.searchsorted(indices, some)
+    places = places[places < len(indices)]
+    return places[np.isin(indices[places], some)]
+
+
+def _as_slice(indices: np.ndarray) -> np.ndarray | slice:
+    """Ascending indices, at least one, as a slice where they follow each other, which copies nothing."""
+    first, end = int(indices[0]), int(indices[-1]) + 1
+    return slice(first, end) if end - first == len(indices) else indices
 
 
 def _length(array: np.ndarray | None) -> int:

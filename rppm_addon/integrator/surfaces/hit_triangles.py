@@ -14,6 +14,7 @@ from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ..acceleration.instances import HitPaths
 from ..common.active_paths import ActivePaths
+from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes, band_pixels, photon_paths, subsurface_walks
 
 Record("GatherHitsParameters", fallback_point="vec3", first_hit="uint", hit_count="uint")
@@ -24,6 +25,17 @@ _PATHS = {
     HitPaths.SUBSURFACE: subsurface_walks,
 }
 """Number of paths of each list, by the sizes of a scene."""
+
+
+def expected_hit_bytes(sizes: StageSizes) -> dict[str, int]:
+    """Bytes by buffer that the hits of a scene of these sizes take on instances that are not expanded."""
+    count = sum(next_range(2 * size(sizes)) for size in _PATHS.values())
+    of_each = {
+        "hit origins": 8,
+        "world triangles": TRIANGLE_VERTICES.size,
+        "triangle attributes": TRIANGLE_ATTRIBUTES.size,
+    }
+    return {name: count * size for name, size in of_each.items()}
 
 
 class HitTriangles(BufferSet):

@@ -14,10 +14,12 @@ from ...gl.programs.programs import ProgramLibrary
 from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
-from ...scene.storage.sharing import same_members
-from ..common.affine import affine_inverses, determinants
+from ...scene.storage.sharing import changed_members, same_members
+from ..acceleration.instance_records import runs
+from ..common.affine import affine_inverses
 from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
 from .geometry import Geometry
+from .placements import PlacedArrays
 
 SHADING_INSTANCE = Record(
     "ShadingInstance",
@@ -62,6 +64,8 @@ Constants(
 StorageBlock("ShadingInstances", "ShadingInstance shading_instances[];")
 
 _SHAPES = {shape: number for number, shape in enumerate(MeshShape)}
+_AT_ONCE = 1 << 16
+"""Records that are filled in at a time, lest those of a million stand in memory at once."""
 _PARTICLE = ("index", "random", "age", "lifetime", "size", "location", "velocity", "angular_velocity")
 
 
@@ -81,6 +85,11 @@ class SurfaceAttributes(BufferSet):
         self.count = 0
         self.has_terminators = False
         """Whether any instance has an offset of its shadow terminator."""
+        self._have_terminators = np.zeros(0, bool)
+        """(instances,) those that have one."""
+        self._meshes: list[Mesh] = []
+        self._written: list[Instance] = []
+        """Meshes and instances of the records on the device."""
         self._sources: dict[int, tuple] = {}
         """Arrays and settings from which the values were made, by the place of these in the buffer."""
 
@@ -90,15 +99,31 @@ class SurfaceAttributes(BufferSet):
         Values that come from the very arrays of the last build and have the same place are not written again.
         """
         self.count = len(names)
-        instances = [placement.instance for placement in geometry.placements]
-        records = SHADING_INSTANCE.zeros(max(1, len(instances)))
-        self.has_terminators = False
-        if instances:
-            _fill(records, instances, geometry.matrices, scene.meshes)
-            self.has_terminators = any((records[f"terminator_{name}"] > 0).any() for name in ("offset", "flags"))
-        self._instances.upload(records)
-        turned = (determinants(geometry.matrices) < 0.0).tolist() if names else []
+        instances = geometry.placements.instances
+        self._write_records(scene.meshes, instances, geometry.placed)
+        turned = (geometry.placed.determinants < 0.0).tolist() if names else []
         self._upload_values(scene.meshes, instances, turned, names)
+
+    def _write_records(self, meshes: list[Mesh], instances: list[Instance], placed: PlacedArrays) -> None:
+        """Write the records of instances that are not the very objects of the last time at their places."""
+        before, self._written = self._written, []  # should an upload fail
+        is_new = self._instances.require_items(max(1, len(instances)))
+        stays = not is_new and same_members(meshes, self._meshes)  # whose box a record has as well
+        rows = np.arange(len(instances))
+        if stays and len(before) == len(instances):
+            rows = changed_members(before, instances)
+        else:
+            self._have_terminators = np.zeros(len(instances), bool)
+        for part in runs(rows, _AT_ONCE):
+            records = SHADING_INSTANCE.zeros(len(part))
+            chosen = slice(int(part[0]), int(part[-1]) + 1)
+            _fill(records, instances[chosen], placed.matrices[chosen], meshes)
+            self._have_terminators[chosen] = (records["terminator_offset"] > 0) | (records["terminator_flags"] > 0)
+            self._instances.write(records, int(part[0]) * SHADING_INSTANCE.size)
+        if not instances:
+            self._instances.write(SHADING_INSTANCE.zeros(1))
+        self.has_terminators = bool(self._have_terminators.any())
+        self._meshes, self._written = list(meshes), list(instances)
 
     def _upload_values(
         self, meshes: list[Mesh], instances: list[Instance], turned: list[bool], names: list[str]
@@ -135,7 +160,7 @@ class SurfaceAttributes(BufferSet):
 
 
 def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, meshes: list[Mesh]) -> None:
-    """All but the first triangles; the matrices (n, 4, 4) are those of the instances."""
+    """Fill in records of instances, whose matrices (n, 4, 4) are these."""
     which = np.array([instance.mesh for instance in instances])
     used = np.unique(which)
     place = np.searchsorted(used, which)
@@ -143,7 +168,8 @@ def _fill(records: np.ndarray, instances: list[Instance], matrices: np.ndarray, 
     records["texture_location"] = np.array([meshes[index].texture_location for index in used])[place]
     records["shape"] = np.array([_SHAPES[meshes[index].shape] for index in used])[place]
     records["texture_scale"] = np.where(size != 0.0, 0.5 / np.where(size != 0.0, size, 1.0), 0.0)[place]
-    inverses = affine_inverses(matrices)
+    with np.errstate(invalid="ignore", over="ignore"):
+        inverses = affine_inverses(matrices)
     for row in range(3):
         records[f"to_object{row}"] = inverses[:, row]
     records["location"] = matrices[:, :3, 3]

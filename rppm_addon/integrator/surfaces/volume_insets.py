@@ -12,7 +12,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...scene.materials import Material
-from ...scene.meshes import Instance
 
 _INSET = 2.0**-17
 """Distance by which a face moves, over its object's extent and the distance from the origin: 16 to 28 times what rays
@@ -23,17 +22,15 @@ _MOST = 1e-2
 """Fraction of an extent that an inset takes at most on both sides together."""
 
 
-def volumes_alone(instances: Sequence[Instance], materials: Sequence[Material]) -> list[int]:
-    """Numbers of the instances of which all surfaces show nothing, and bound a volume."""
+def volumes_alone(lists: Sequence[Sequence[int]], materials: Sequence[Material]) -> list[int]:
+    """Numbers of the lists of materials of slots whose surfaces all show nothing, and bound a volume."""
     boundaries = {number for number, material in enumerate(materials) if _is_boundary(material)}
-    if not boundaries:
-        return []
     known = range(len(materials))
-    return [place for place, instance in enumerate(instances) if _bounds_alone(instance, boundaries, known)]
+    return [number for number, slots in enumerate(lists) if _bounds_alone(slots, boundaries, known)]
 
 
-def _bounds_alone(instance: Instance, boundaries: set[int], known: range) -> bool:
-    numbers = [number for number in instance.materials if number in known]
+def _bounds_alone(slots: Sequence[int], boundaries: set[int], known: range) -> bool:
+    numbers = [number for number in slots if number in known]
     return bool(numbers) and boundaries.issuperset(numbers)
 
 

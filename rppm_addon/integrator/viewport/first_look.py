@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Picture of a scene before its programs are compiled: plain surfaces under a light at the viewer's head."""
 
+import functools
 from collections.abc import Callable, Mapping
 
 import moderngl
@@ -22,6 +23,7 @@ from ...scene.storage.sharing import same_members
 from ..acceleration.instances import InstancedMeshes
 from ..common.band import MAX_RASTER_PIXELS
 from ..common.camera_view import CAMERA_VIEW, camera_view
+from ..common.instance_columns import InstanceColumns
 from ..surfaces.geometry import Geometry
 
 PLAIN_SURFACE = Record(
@@ -73,7 +75,7 @@ class FirstLook(BufferSet):
         geometry: Geometry,
         displaced: Callable[[Scene], Scene] = lambda scene: scene,
         centered: Callable[[Scene], Scene] = lambda scene: scene,
-        instanced: Callable[[Scene], np.ndarray | None] = lambda _scene: None,
+        instanced: Callable[[Scene, InstanceColumns], np.ndarray | None] = lambda _scene, _columns: None,
     ) -> None:
         """geometry: that of the mapper that renders the scenes later, which then has it on the device already;
         displaced: gives a scene with the meshes that the mapper has in place of its own, as far as that is known;
@@ -205,9 +207,10 @@ class FirstLook(BufferSet):
         if not self._has_parts_of(scene):
             self._shown = None
             displaced = self._displaced(scene)
-            self._geometry.build(displaced, len(scene.materials), is_instanced=self._instanced(displaced))
+            instanced = functools.partial(self._instanced, displaced)
+            self._geometry.build(displaced, len(scene.materials), instanced=instanced)
             surfaces = [plain_surface(owner.graph, scene.images) for owner in (*scene.materials, default_material())]
-            opacities = [_opacity(placement.instance) for placement in self._geometry.placements]
+            opacities = list(map(_opacity, self._geometry.placements.instances))
             self._surfaces.upload(_records(surfaces))
             self._opacities.upload(np.array(opacities or [0.0], np.float32))
             self._blends = any(surface.opacity < 1.0 for surface in surfaces)

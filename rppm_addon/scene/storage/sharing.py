@@ -97,7 +97,12 @@ def _equal_instance(a: Instance, b: Instance) -> bool:
 
 def same_members(a: Sequence, b: Sequence) -> bool:
     """Whether two lists hold the very same objects."""
-    return len(a) == len(b) and all(x is y for x, y in zip(a, b, strict=True))
+    return len(a) == len(b) and all(map(operator.is_, a, b))
+
+
+def changed_members(before: Sequence, after: Sequence) -> np.ndarray:
+    """(n,) int64, ascending, the places where a list of as many members holds another object than the list before."""
+    return np.flatnonzero(np.fromiter(map(operator.is_not, before, after), bool, len(after)))
 
 
 def share(before: Scene | None, after: Scene, compare_large: bool = False) -> Scene:

@@ -17,6 +17,7 @@ from ...denoising.places import LibraryPlace, Source
 from ...gl.context.context import Context, open_others
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.errors import DeviceLostError, RppmError
+from ...scene.scene import Scene
 from ..placeholders.known_programs import KnownPrograms
 from ..transport.arrays import unpack
 from ..transport.kept_renders import pause_of
@@ -75,6 +76,8 @@ class Worker:
         self._sessions: dict[int, tuple[SessionKind, ViewportRenderer | Rendering | Preparation]] = {}
         self._programs = KnownPrograms()
         self._scheduler = FairShare()
+        self._shown: dict[int, Scene] = {}
+        """By session, the scene that was last received, in the reading thread: what is edited shares its instances."""
         self._whole = threading.Event()
         """Cleared while a scene is received: the drivers leave the reading thread little of the interpreter."""
         self._whole.set()
@@ -127,12 +130,15 @@ class Worker:
             self._receiver.learn(message["document"], unpack(message["arrays"]))
         elif kind == "show":
             scene = self._receiver.receive(message.pop("document"), unpack(message.pop("arrays")))
-            message["scene"] = scene.expanded()
+            message["scene"] = scene.expanded(self._shown.get(message["session"]))
+            self._shown[message["session"]] = scene
             _, session = self._sessions.get(message["session"], (None, None))
             if isinstance(session, ViewportRenderer):
                 session.expect(message["scene"], message["generation"])
             self._send("taken", session=message["session"], number=message.pop("number"))
             self._whole.set()
+        elif kind == "close":
+            self._shown.pop(message["session"], None)
         elif kind == "resume":
             message["pause"] = pause_of(message.pop("document"), unpack(message.pop("arrays")))
         self._receiver.forget(message.pop("dead", ()))

@@ -3,15 +3,18 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 import scenes
 
 from rppm_addon.gl.buffer_sets import sum_by_name
 from rppm_addon.integrator.common.band import MAXIMUM_BAND_PIXELS
 from rppm_addon.integrator.memory import expected_memory
-from rppm_addon.scene import DensityEstimation
+from rppm_addon.scene import AccelerationStructure, DensityEstimation, Instancing
+from rppm_addon.scene.errors import DeviceError
 
 ROUTES = DensityEstimation.RASTERIZED, DensityEstimation.GRID
+BVH = AccelerationStructure.BVH
 SETTINGS = {"photons": 3000, "photon_path_length": 5, "camera_path_length": 2, "iterations": 1}
 
 
@@ -78,3 +81,45 @@ def test_what_the_settings_alone_take_is_known_beforehand(renderer, width, heigh
         # Nothing but what depends on the scene or the camera's kind is left out.
         lists = {"splat jobs"} if rasterized else {"photon grid", "sorted photons"}
         assert set(memory.working[group]) - set(sizes) <= {"visibility buffer", *lists}
+
+
+@pytest.mark.parametrize(("width", "height"), [(16, 16), (2048, 200)])
+def test_hits_on_instances_are_known_beforehand(renderer, width, height):
+    """Where two levels are asked for, so that what a scene takes beside does not depend on the resolution."""
+    found = []
+    for instancing in (Instancing.EXPANDED, Instancing.TWO_LEVELS):
+        scene = scenes.room(16, instancing=instancing, acceleration_structure=BVH, **SETTINGS)
+        scene = dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, width=width, height=height))
+        found.append(renderer.memory(scene).working["scene"])
+    expanded, in_levels = found
+    expected = expected_memory(width, height, 3000, 5, in_two_levels=True).working["scene"]
+    assert in_levels["hit origins"] == expected["hit origins"]
+    for name in ("world triangles", "triangle attributes"):
+        rest = in_levels[name] - expected[name]  # of what is expanded, and of the ball in object space
+        assert 0 < rest <= expanded[name] + 2 * 256 * 48  # each part begins where a block may
+
+
+def test_bytes_of_an_instance_that_is_not_expanded(mapper):
+    """As docs/troubleshooting.md says: 208 and 96 of any, and 208 more."""
+
+    def total(count: int) -> int:
+        scene = scenes.room(16, instancing=Instancing.TWO_LEVELS, acceleration_structure=BVH, **SETTINGS)
+        places = np.random.default_rng(1).uniform(-0.5, 0.5, (count, 3))
+        scene.instances += [dataclasses.replace(scene.instances[-1], matrix=scenes.placed(*at, 0.01)) for at in places]
+        mapper.build(scene)
+        return sum(mapper.memory_bytes.values())
+
+    few, many = total(160), total(1600)
+    assert (many - few) / 1440 == pytest.approx(208 + 96 + 208, abs=8)  # a few nodes are kept for instances that move
+
+
+def test_too_many_instances_are_refused_with_how_many_have_room(mapper, context, monkeypatch):
+    scene = scenes.room(16, instancing=Instancing.TWO_LEVELS, acceleration_structure=BVH, **SETTINGS)
+    (ball,) = scene.instances[-1:]
+    scene.instances += [dataclasses.replace(ball, matrix=scenes.placed(0.1, 0.1, 0.1, 0.01)) for _ in range(5093)]
+    monkeypatch.setitem(context.limits, "GL_MAX_SHADER_STORAGE_BLOCK_SIZE", 1 << 20)
+    monkeypatch.setitem(context.__dict__, "max_texels", 1 << 16)  # of 16 bytes, as many bytes
+    with pytest.raises(DeviceError, match=r"shading instances needs .* room for 5,041 of 5,100, .*; remove instances"):
+        mapper.build(scene)
+    scene.instances = scene.instances[:5041]
+    mapper.build(scene)

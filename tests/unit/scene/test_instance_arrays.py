@@ -78,3 +78,27 @@ def test_places_that_are_none(places, message):
 
 def test_cryptomatte_has_the_names_of_arrays():
     assert names_in(OBJECTS, scene_of(row(1, 2), names="ab")) == ["a", "b", "many"]
+
+
+def test_an_edited_array_shares_the_instances_that_say_the_same():
+    before = scene_of(row(1, 2, 3, 4), names="a")
+    (array,) = before.instance_arrays
+    matrices = array.matrices.copy()
+    matrices[2, 1, 3] = 5.0
+    after = dataclasses.replace(before, instance_arrays=[dataclasses.replace(array, matrices=matrices)])
+    old, new = before.expanded().instances, after.expanded(before).instances
+    assert [a is b for a, b in zip(old, new, strict=True)] == [True, True, True, False, True]
+    assert new[3].matrix[1, 3] == 5.0 and new[3].random == old[3].random
+
+
+@pytest.mark.parametrize(
+    "members", [{"object_index": 7}, {"color": (1.0, 0.5, 1.0, 1.0)}, {"materials": [1]}, {"attributes": {"a": (1.0,)}}]
+)
+def test_an_array_whose_instances_share_something_else_shares_none(members):
+    before = scene_of(row(1, 2, 3, 4), names="a")
+    (array,) = before.instance_arrays
+    first = dataclasses.replace(array.first, **members)
+    after = dataclasses.replace(before, instance_arrays=[dataclasses.replace(array, first=first)])
+    (name, value) = next(iter(members.items()))
+    before.expanded()
+    assert all(getattr(instance, name) == value for instance in after.expanded(before).instances[1:])

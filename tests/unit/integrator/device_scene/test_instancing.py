@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from support.lobes import Lobe, LobeKind, material
 
+from rppm_addon.integrator.common.instance_columns import InstanceColumns
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.device_scene import instancing
 from rppm_addon.integrator.device_scene.instancing import MovedInstances, instanced_members
@@ -46,7 +47,9 @@ def scene_of(*members: tuple[int, int], **settings: object) -> Scene:
 def members_of(scene: Scene, moved: tuple[int, ...] = (), is_software: bool = True) -> list[int]:
     has_moved = np.zeros(len(scene.instances), bool)
     has_moved[list(moved)] = True
-    found = instanced_members(scene, has_moved, is_software)
+    columns = InstanceColumns()
+    columns.follow(scene.instances)
+    found = instanced_members(scene, columns, has_moved, is_software)
     return [] if found is None else np.flatnonzero(found).tolist()
 
 

@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 
 from rppm_addon.integrator.common.affine import affine_inverses
-from rppm_addon.integrator.surfaces.geometry import placed_boxes
+from rppm_addon.integrator.surfaces.placements import placed_boxes
 
 
 def affine(count: int) -> np.ndarray:
