@@ -58,8 +58,8 @@ float loss_ahead(uint flags, uint index) {
     return scattering_loss(flags, cross_surface(flags, closure.material, closure_backfacing(closure)));
 }
 
-// At the surface that the ray leaves: one that has reflected the path counts as if no light passed it. Where the media do
-// not end there, the surface where they did stays the near one.
+// At the surface that the ray leaves: one that has reflected the path counts as if no light passed it. Where the media
+// do not end there, the surface where they did stays the near one.
 void leave_near_loss(uint flags, Ray ray, uint index) {
     vec3 v0 = triangle_vertices[3u * ray.source_triangle].xyz;
     vec3 e1 = triangle_vertices[3u * ray.source_triangle + 1u].xyz - v0,
