@@ -8,6 +8,7 @@ from stage import ball, block, camera, color_world, diffuse, glass, lathe, light
 from volumes import scattering, set_volume_bounces
 
 LAMP, FOCUS, IOR, HALF_ANGLE = 3.0, 0.16, 1.5, math.radians(34)
+FRAMES = 48
 EDGE = math.radians(30)
 
 
@@ -56,7 +57,11 @@ def lantern():
         part.parent, part.rotation_euler.y = axis, math.radians(turn)
     for lens in lenses:
         lens.data.set_sharp_from_angle(angle=EDGE)
-    axis.rotation_euler.z = math.radians(-27)
+    # Half a turn, after which the lantern looks the same again.
+    bpy.context.preferences.edit.keyframe_new_interpolation_type = "LINEAR"
+    for frame, turn in ((1, -27.0), (FRAMES + 1, 153.0)):
+        axis.rotation_euler.z = math.radians(turn)
+        axis.keyframe_insert("rotation_euler", frame=frame)
     light("POINT", "Lamp", (0, 0, LAMP), (0, 0, 0), 900.0, (1.0, 0.86, 0.62), shadow_soft_size=0.004)
 
 
@@ -72,6 +77,7 @@ def build(scene):
     color_world(scene, (0.10, 0.19, 0.36), 0.3)
     camera((0.6, -7.0, 0.8), (0.15, 0.0, 2.05), 31.0)
     set_up(scene, 640, 360, exposure=0.8)
+    scene.render.fps, scene.frame_start, scene.frame_end = 24, 1, FRAMES
     set_volume_bounces(scene, rppm=0, cycles=1)
 
 

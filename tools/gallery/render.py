@@ -41,8 +41,10 @@ SCENES = (
     "kaleidoscope",
     "lighthouse",
     "pool_shafts",
+    "window_smoke",
+    "milk",
 )
-FRAMES = {"aquarium": 1, "disco_ball": 12}
+FRAMES = {"aquarium": 1, "disco_ball": 12, "lighthouse": 1, "window_smoke": 1}
 """Frame that is shown, of each scene that moves."""
 FILM_FRAMES, FILM_SIZE, FILM_SPEED = "1..48..4", (320, 180), 6
 """Which are rendered, how large, and how many are shown a second."""

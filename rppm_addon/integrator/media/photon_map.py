@@ -36,9 +36,13 @@ Record(
     least_free_path="float",
     **SUM_PARAMETERS,
 )
-StorageBlock("MediumPhotons", "uint medium_photon_count; uint straight_photon_count; uint medium_photons[];")
+StorageBlock(
+    "MediumPhotons",
+    "uint medium_photon_count; uint straight_photon_count; uint direct_photon_count; uint medium_photons_unused; "
+    "uint medium_photons[];",
+)
 """Numbers of the photons that media have scattered, and how many of them nothing but specular surfaces had scattered
-before."""
+before; and how many others came straight from a light, which shadow rays stand for."""
 
 _EXPECTED_PHOTONS = 8
 """Photons in the kernel of the first iteration, where they lie evenly in the media."""
@@ -50,9 +54,9 @@ _WIDEST_KERNEL = 2.5
 _FREE_PATHS = 0.7
 """Radius of the first iteration in dense media, mean free paths."""
 Constants("MediumPhotonKernel", signed=True, WIDEST=_WIDEST_KERNEL)
-_MOST_STRAIGHT = 0.1
-"""Fraction of the photons in media that nothing but specular surfaces has scattered before, up to which camera paths
-are scattered: they find no such light."""
+_MOST_STRAIGHT = 0.25
+"""Fraction of the photons that come to media straight or by specular surfaces alone which may have come by the latter
+where camera paths are scattered: they find no such light."""
 _CANDIDATES = 30_000
 """Photons that a thread looks at: llvmpipe ends the loops of a thread after 65535 rounds."""
 
@@ -62,7 +66,7 @@ class MediumPhotonMap(Stage):
 
     memory_group = "media"
     remedy = "lower the photons per iteration or the photon path length"
-    _numbers = StorageBuffer("photons in media", "uint", header="uvec2", block="MediumPhotons")
+    _numbers = StorageBuffer("photons in media", "uint", header="uvec4", block="MediumPhotons")
     _grid = StorageBuffer("grid of photons in media", "uvec2", header="uvec4", block="Buckets")
     _sorted = StorageBuffer("sorted photons in media", "uvec4", texel_bytes=16, block="SortedPhotons")
     _list = ComputeShader("media/photon_map/list.comp")
@@ -76,6 +80,8 @@ class MediumPhotonMap(Stage):
     """Radius of the kernel, meters."""
     _straight_count = 0
     """Photons of the map that nothing but specular surfaces has scattered before."""
+    _direct_count = 0
+    """Photons in media, beside those of the map, that come straight from lights."""
     _shrinkage = 1.0
     """Radii over those of the first iteration."""
 
@@ -92,10 +98,11 @@ class MediumPhotonMap(Stage):
         with context.timers.stage("photon map of media"):
             slots = max(photons.slots, 1)
             self._numbers.require_items(slots)
-            self._numbers.write(np.zeros(2, np.uint32))
+            self._numbers.write(np.zeros(4, np.uint32))
             blocks = {**context.blocks, **photons.blocks, **self.blocks}
             self._list.run(slots, blocks, {"count": slots})
-            self.photon_count, self._straight_count = map(int, self._numbers.read(np.uint32, 2))
+            counts = map(int, self._numbers.read(np.uint32, 3))
+            self.photon_count, self._straight_count, self._direct_count = counts
             if not self.photon_count:
                 return
             self._shrinkage = shrinkage_in(3, iteration.number, context.settings.alpha)
@@ -152,8 +159,8 @@ class MediumPhotonMap(Stage):
 
     @property
     def is_lit_by_specular_surfaces(self) -> bool:
-        """True where much of the light in media has come straight by specular surfaces: photons alone bring it."""
-        return self._straight_count > _MOST_STRAIGHT * self.photon_count
+        """True where specular surfaces let much of the light into media: photons alone bring it."""
+        return self._straight_count > _MOST_STRAIGHT * (self._straight_count + self._direct_count)
 
     @property
     def _buckets(self) -> int:

@@ -39,19 +39,22 @@ MEDIUM_VERTEX = Record(
     far_normal="uint",
     near_loss="float",
     far_loss="float",
-    unused0="uint",
-    unused1="uint",
+    near_height="float",
+    far_height="float",
 )
 """The ray of a camera path in media, in the current segment, and its vertex there. ``far`` is the length of the ray,
 meters, and ``thickness`` the optical thickness of the media along it. ``near_loss`` and ``far_loss`` are the fractions
 of the media's scattering that end at the surfaces where the ray begins and ends, whose geometric normals are
-``near_normal`` and ``far_normal``; 0 where there is none. Where media scatter the path (CameraPath.medium_passing), it
+``near_normal`` and ``far_normal``; 0 where there is none. Where media do not end at the surface where the ray begins,
+as at glass that overlaps milk, the near surface is the one where they did; ``near_height`` and ``far_height`` are the
+heights of both ends of the ray above its plane, meters. Where media scatter the path (CameraPath.medium_passing), it
 goes on from ``position`` by ``direction`` and ``throughput``; ``phase_pdf`` is that of the direction for MIS with the
 environment, 1/sr."""
 StorageBlock("MediumVertices", "MediumVertex medium_vertices[];")
 
-_MOST_VERTICES = 4
-"""Vertices of a camera path in media, behind which it takes photons."""
+_MOST_VERTICES, _MOST_VERTICES_IN_GRIDS = 8, 4
+"""Vertices of a camera path in media, behind which it takes photons; and where there are grids, in which rays cost
+more."""
 
 _LONGEST_BEAM = 40.0
 """Largest length of a beam over Media.reach. In thin fog of the world photons fly far."""
@@ -73,6 +76,7 @@ class MediumScattering(Stage):
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
         self._takes_emission_by_photons = sizes.features.has_emissive_media
+        self._most_vertices = _MOST_VERTICES_IN_GRIDS if sizes.features.has_heterogeneous_media else _MOST_VERTICES
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -123,7 +127,7 @@ class MediumScattering(Stage):
                 {
                     "segment": segment,
                     "first_pixel": band.first_pixel,
-                    "most_vertices": _MOST_VERTICES if scatters else 0,
+                    "most_vertices": self._most_vertices if scatters else 0,
                     "least_free_path": beams.least_free_path,
                 },
             )

@@ -24,7 +24,7 @@ float kernel_beyond_surfaces(Ray ray, MediumVertex segment, float distance, floa
     float beyond = 0.0;
     if (segment.near_loss > 0.0) {
         float cosine = abs(dot(unpack_unit_vector(segment.near_normal), ray.direction));
-        beyond += segment.near_loss * kernel_beyond_plane(cosine * distance / radius);
+        beyond += segment.near_loss * kernel_beyond_plane((segment.near_height + cosine * distance) / radius);
     }
     if (segment.far_loss > 0.0) {
         float cosine = abs(dot(unpack_unit_vector(segment.far_normal), ray.direction));

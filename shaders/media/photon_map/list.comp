@@ -1,7 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lists the photons that media have scattered. Where shadow rays bring direct light, photons straight from a light are
-// left out.
+// left out, and counted.
 
 layout(local_size_x = 64) in;
 
@@ -19,7 +19,10 @@ buffer MediumPhotons;
 void main() {
     uint index = invocation_index();
     if (index >= min(parameters.count, photon_end) || (photons[index].bounce_counts & PHOTON_IN_MEDIUM) == 0u) return;
-    if (iteration.next_event != 0u && (photons[index].flags & PHOTON_DIRECT) != 0u) return;
+    if (iteration.next_event != 0u && (photons[index].flags & PHOTON_DIRECT) != 0u) {
+        atomicAdd(direct_photon_count, 1u);
+        return;
+    }
     bool is_straight =
         medium_count(photons[index].bounce_counts) == 0u && is_light_direct(photons[index].flags, photons[index].depth);
     if (is_straight) atomicAdd(straight_photon_count, 1u);

@@ -28,7 +28,7 @@ buffer CameraPaths;
 readonly buffer Closures;
 readonly buffer Attributes;
 readonly buffer Triangles;
-writeonly buffer MediumVertices;
+buffer MediumVertices;
 
 // Rays that lose less light than this to media are not scattered: what is behind would only become noisy.
 const float MOST_PASSING = 0.6;
@@ -58,7 +58,8 @@ float loss_ahead(uint flags, uint index) {
     return scattering_loss(flags, cross_surface(flags, closure.material, closure_backfacing(closure)));
 }
 
-// At the surface that the ray leaves: one that has reflected the path counts as if no light passed it.
+// At the surface that the ray leaves: one that has reflected the path counts as if no light passed it. Where the media
+// do not end there, the surface where they did stays the near one.
 void leave_near_loss(uint flags, Ray ray, uint index) {
     vec3 v0 = triangle_vertices[3u * ray.source_triangle].xyz;
     vec3 e1 = triangle_vertices[3u * ray.source_triangle + 1u].xyz - v0,
@@ -67,8 +68,12 @@ void leave_near_loss(uint flags, Ray ray, uint index) {
     bool was_inside = dot(normal, ray.direction) > 0.0,
          passed = (flags & (PATH_CAMERA_TRANSPARENT | PATH_TRANSMITTED)) != 0u;
     uint before = cross_surface(flags, attributes[ray.source_triangle].material, !was_inside);
-    medium_vertices[index].near_normal = pack_unit_vector(normal);
-    medium_vertices[index].near_loss = passed ? scattering_loss(flags, before) : 1.0;
+    float loss = passed ? scattering_loss(flags, before) : 1.0;
+    if (loss > 0.0) {
+        medium_vertices[index].near_normal = pack_unit_vector(normal);
+        medium_vertices[index].near_loss = loss;
+    }
+    medium_vertices[index].near_height = loss > 0.0 ? 0.0 : medium_vertices[index].far_height;
 }
 
 void main() {
@@ -84,8 +89,10 @@ void main() {
     medium_vertices[index].far = far;
     medium_vertices[index].far_normal = closures[index].geometric_normal;
     medium_vertices[index].far_loss = has_far ? loss_ahead(path.flags, index) : 0.0;
-    medium_vertices[index].near_loss = 0.0;
     if (ray.source_triangle != NO_TRIANGLE) leave_near_loss(path.flags, ray, index);
+    else medium_vertices[index].near_loss = 0.0;
+    float near_cosine = abs(dot(unpack_unit_vector(medium_vertices[index].near_normal), ray.direction));
+    medium_vertices[index].far_height = medium_vertices[index].near_height + near_cosine * far;
     medium_vertices[index].thickness = thickness;
     float passing = dot(exp(-thickness), vec3(1.0 / 3.0));
     if (!may_scatter(path) || (medium_count(path.bounce_counts) == 0u && passing > MOST_PASSING)) return;

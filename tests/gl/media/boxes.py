@@ -145,3 +145,25 @@ def escaping(box: Box, start: np.ndarray, count: int, seed: int = 1) -> tuple[fl
         origin, way = (origin + distance[:, None] * way)[stays], _turned(way[stays], box.g, rng)
     fraction = escaped / count
     return fraction, float(np.sqrt(fraction * (1.0 - fraction) / count))
+
+
+def collisions(box: Box, count: int, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Places, (n, 3), at which a box scatters ``count`` paths that enter it from an even world, and the paths' numbers,
+    (n,). The medium absorbs nothing; a path has 4 x volume / surface x scattering places on average."""
+    rng = np.random.default_rng(seed)
+    paths, axis, side = np.arange(count), rng.integers(0, 3, count), rng.choice([-1.0, 1.0], count)
+    origin, way = rng.uniform(-box.half, box.half, (count, 3)), np.empty((count, 3))
+    cosine, angle = np.sqrt(rng.random(count)), 2.0 * np.pi * rng.random(count)
+    sine = np.sqrt(1.0 - cosine**2)
+    origin[paths, axis], way[paths, axis] = side * box.half, -side * cosine
+    way[paths, (axis + 1) % 3], way[paths, (axis + 2) % 3] = sine * np.cos(angle), sine * np.sin(angle)
+    origin += np.asarray(box.center)
+    places, numbers = [], []
+    while len(way):
+        distance = rng.exponential(1.0 / box.extinction[0], len(way))
+        stays = distance < box.interval(origin, way)[1]
+        origin, paths = (origin + distance[:, None] * way)[stays], paths[stays]
+        way = _turned(way[stays], box.g, rng)
+        places.append(origin)
+        numbers.append(paths)
+    return np.concatenate(places), np.concatenate(numbers)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Media that absorb nothing, in an even world: they look like nothing at all, and noise falls as theory says."""
 
+import boxes
 import fog
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.density_estimation.radii import shrinkage_in
 from rppm_addon.scene import World
+from rppm_addon.scene.settings import DirectLight
 
 EYE = (0.5, -4.0, 0.7)
 CLEAR = Lobe(LobeKind.TRANSPARENT)
@@ -85,20 +87,23 @@ def test_a_dense_box(mapper):
     fog.assert_expected(pictures_of(mapper, scene), 1.0, 0.05, bias=0.02)
 
 
-def test_clear_surfaces_within(mapper):
-    """Photons are on both sides of surfaces that the medium does not end at, so that none of the kernel is missed."""
+@pytest.mark.parametrize("halves", [(0.8, 0.6, 0.4), (0.99, 0.98)], ids=["deep", "near the surface"])
+def test_clear_surfaces_within(mapper, halves):
+    """Photons are on both sides of surfaces that the medium does not end at, so that none of the kernel is missed; but
+    the kernel is cut where the medium ends, be it before such a surface."""
 
     def mean(*inner: float) -> tuple[float, float]:
         boxes = [(scenes.box("inner", half), material("inner", CLEAR), np.eye(4)) for half in inner]
-        scene = furnace(Box(scattering=2.0), *boxes, use_final_gather=False, transparent_max_bounces=64)
+        settings = {"use_final_gather": False, "direct_light": DirectLight.PHOTONS, "transparent_max_bounces": 64}
+        scene = furnace(Box(scattering=2.0), *boxes, **settings)
         found = pictures_of(mapper, scene).mean(axis=(1, 2, 3))
         return float(np.mean(found)), float(np.std(found, ddof=1) / np.sqrt(len(found)))
 
-    (plain, plain_error), (cut, cut_error) = mean(), mean(0.8, 0.6, 0.4)
+    (plain, plain_error), (cut, cut_error) = mean(), mean(*halves)
     noise = np.hypot(plain_error, cut_error)
     print(f"\n{plain:.4f} and with surfaces {cut:.4f}, +- {noise:.4f}")
     assert noise < 0.01
-    assert abs(cut - plain) < 0.01 + 4.0 * noise
+    assert abs(cut - plain) < 0.005 + 3.0 * noise
 
 
 @pytest.mark.parametrize("dimensions", [1, 3])
@@ -110,39 +115,80 @@ def test_the_kernel_shrinks_at_the_best_rate(dimensions):
     assert slope == pytest.approx(-1.0 / (dimensions + 4.0), abs=1e-3)
 
 
-def runs(mapper, scene, seeds, stops):
-    """(stops, seeds, H, W) running means of the red channel after so many iterations, and the radii there."""
-    found, radii = [], []
+FREE_PATHS = 0.7
+"""Radius of the first iteration in dense media, mean free paths (photon_map.py)."""
+
+
+def radiance_of_iterations(mapper, scene, seeds: int, iterations: int) -> tuple[np.ndarray, float]:
+    """(iterations, seeds, H, W) radiance of the red channel that each iteration adds, and the photons in the medium,
+    on average."""
+    found, photons = [], []
     for seed in range(seeds):
-        scene.settings = scene.settings.with_values(seed=seed, iterations=max(stops))
+        scene.settings = scene.settings.with_values(seed=seed, iterations=iterations)
         mapper.build(scene)
-        found.append([])
-        for number in range(1, max(stops) + 1):
+        sums = [np.zeros(())]
+        for number in range(1, iterations + 1):
             mapper.iterate()
-            if number in stops:
-                found[-1].append(mapper.film.read_radiance()[..., 0].astype(np.float64))
-                radii.append(mapper.stages.medium_photons.radius)
-    return np.moveaxis(np.array(found), 1, 0), np.array(radii).reshape(seeds, -1).mean(axis=0)
+            sums.append(number * mapper.film.read_radiance()[..., 0].astype(np.float64))
+            photons.append(mapper.stages.medium_photons.photon_count)
+        found.append(np.diff(np.stack(np.broadcast_arrays(*sums)), axis=0))
+    return np.stack(found, axis=1), float(np.mean(photons))
+
+
+def kernel_beyond(height: np.ndarray) -> np.ndarray:
+    """The part of the kernel beyond a plane at a height, in radii."""
+    height = np.minimum(height, 1.0)
+    return 0.5 - 15.0 / 16.0 * height * (1.0 - height**2 * (2.0 / 3.0 - 0.2 * height**2))
+
+
+def variance_of_kernel(box: Box, camera, radius: float, paths: int = 16384) -> float:
+    """Mean over the pixels of the variance of their radiance for one photon in the medium; of n it is 1 / n of that.
+
+    Paths are independent, and the photons of a path are not: the variance is as the mean squared sum of the kernel
+    over the photons of a path. Alone, photons would have 1 / r^3; those that a path leaves in the same kernel, of
+    whom there are some sigma r, add 1 / r^2 and less.
+    """
+    places, numbers = boxes.collisions(box, paths)
+    origin, ways = fog.rays(camera)
+    ways, rng, extinction = ways.reshape(-1, 3), np.random.default_rng(3), box.extinction[0]
+    squares, means = [], []
+    for way, (near, far) in zip(ways, np.transpose(box.interval(origin, ways)), strict=True):
+        stopped = -np.expm1(-extinction * (far - near))
+        distance = near - np.log1p(-rng.random() * stopped) / extinction
+        x2 = ((places - origin - distance * way) ** 2).sum(axis=1) / radius**2
+        beyond = sum(kernel_beyond(abs(way[1]) * (end - distance) / radius) for end in (far, 2.0 * distance - near))
+        kernel = stopped * (1.0 - x2[x2 < 1.0]) / (1.0 - beyond)
+        squares.append((np.bincount(numbers[x2 < 1.0], kernel) ** 2).sum())
+        means.append(kernel.sum() / stopped)
+    return len(places) * float(np.mean(squares) / np.mean(means) ** 2)
 
 
 @pytest.mark.long
-def test_noise_falls_as_the_kernel_shrinks(mapper):
-    """In a white furnace all noise is that of the number of photons in the kernel, as each ray gives the same
-    elsewhere. A sample's variance is as 1 / r^3, of which that of the mean follows."""
-    scene, stops = furnace(Box(scattering=2.0), half=0.2, photons=2048, use_final_gather=False), [2, 16]
-    found, radii = runs(mapper, scene, 12, stops)
-    alpha = scene.settings.alpha
-    shrinkage = np.array([shrinkage_in(3, number, alpha) for number in range(1, stops[-1] + 1)])
-    assert radii[1] / radii[0] == pytest.approx(shrinkage[stops[1] - 1] / shrinkage[stops[0] - 1], rel=0.05)
-    few, many = ((shrinkage[:count] ** -3.0).sum() / count**2 for count in stops)
+def test_noise_follows_the_kernel(mapper):
+    """In a white furnace whose photons bring all light, all noise is that of the photons in the kernel, as each ray
+    gives the same elsewhere. The first iteration is left out: nothing has aimed its photons."""
+    box, iterations = Box(scattering=2.0), 18
+    settings = {"photons": 2048, "use_final_gather": False, "direct_light": DirectLight.PHOTONS}
+    scene = furnace(box, half=0.2, **settings)
+    found, photons = radiance_of_iterations(mapper, scene, 16, iterations)
+    numbers = range(2, iterations + 1)
+    radii = np.array([FREE_PATHS / 2.0 * shrinkage_in(3, number, scene.settings.alpha) for number in numbers])
+    ends = [variance_of_kernel(box, scene.camera, radius) / photons for radius in (radii[0], radii[-1])]
+    exponent = np.log(ends[1] / ends[0]) / np.log(radii[-1] / radii[0])
+    assert -2.8 < exponent < -2.0  # -3 where the photons of a path are far from each other
+    expected = ends[0] * (radii / radii[0]) ** exponent
 
-    def ratio(kept: np.ndarray) -> float:
-        variance = found[:, kept].var(axis=1, ddof=1).mean(axis=(1, 2))
-        return float(np.log(variance[1] / variance[0]))
+    def over_expected(kept: np.ndarray) -> np.ndarray:
+        variance = found[1:, kept].var(axis=1, ddof=1).mean(axis=(1, 2)) / expected
+        return np.array([variance.mean(), variance[10:].mean() / variance[:6].mean()])
 
     seeds = np.arange(found.shape[1])
-    parts = np.array([ratio(seeds != left_out) for left_out in seeds])
-    error = np.sqrt((len(seeds) - 1) / len(seeds) * ((parts - parts.mean()) ** 2).sum())  # jackknife
-    print(f"\nratio of variances {ratio(seeds >= 0):.3f} +- {error:.3f}, expected {np.log(many / few):.3f}")
-    assert error < 0.3
-    assert abs(ratio(seeds >= 0) - np.log(many / few)) < 4.0 * error
+    parts = np.array([over_expected(seeds != left_out) for left_out in seeds])
+    error = np.sqrt((len(seeds) - 1) / len(seeds) * ((parts - parts.mean(axis=0)) ** 2).sum(axis=0))  # jackknife
+    level, change = over_expected(seeds >= 0)
+    print(f"\nvariance over expected {level:.3f}, late over early {change:.3f}, +- {error.round(3)}; {exponent:.2f}")
+    assert error.max() < 0.1
+    assert abs(level - 1.0) < 0.1 + 3.0 * error[0]  # photons are spread more evenly than by chance
+    assert abs(change - 1.0) < 4.0 * error[1]
+    mean = found[1:].mean(axis=0).var(axis=0, ddof=1).mean()
+    assert mean == pytest.approx(expected.sum() / len(expected) ** 2, rel=0.25)  # iterations are independent
