@@ -19,7 +19,7 @@ _PACKAGE = Path(__file__).resolve().parents[2]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
 """In the package where pip installed it, else beside it: in a checkout and in Blender's extension."""
 
-_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+))\s*$')
+_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+)(/\w+\.glsl)?(?:\s+or\s+"([^"]+)")?)\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _BLOCK = re.compile(r"^((?:\w+\s+)*buffer\s+(\w+))\s*([;{].*)$")
 _PARAMETERS = re.compile(r"\buniform\s+Parameters\s*\{\s*(\w+)\s+\w+\s*;")
@@ -102,9 +102,10 @@ def expand(
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include TRAVERSAL`` inserts the file that the define of that
-    name is; ``#include <Ray>`` inserts the struct of the record, or the constants, of that name once; ``readonly buffer
-    Rays;`` gets the members of the StorageBlock of that name, and before it the structs of its records. Blocks,
-    textures and images get numbers (bindings.py). Defines go after #version; ``inserts`` are texts of files that are
+    name is; ``#include EMITTERS/tree.glsl or "lights/one_level/tree.glsl"`` that below the folder that it is, or the
+    other file where there is no such define; ``#include <Ray>`` inserts the struct of the record, or the constants, of
+    that name once; ``readonly buffer Rays;`` gets the members of the StorageBlock of that name, and before it the
+    structs of its records. Blocks, textures and images get numbers (bindings.py). Defines go after #version; ``inserts`` are texts of files that are
     made at run time, by name. reads_texels: blocks that are only read become texel buffers; large: those of these names
     in any case (read_as_texels). Sources with either have READS_TEXELS defined. Functions that main does not lead to
     are left out, unless it is to be whole. beside: the other stage of the program, whose numbers hold here as well.
@@ -191,8 +192,10 @@ def _included_file(match: re.Match, defines: Mapping[str, object], includer: str
     if match.group(1):
         return str(match.group(1))
     if match.group(3) not in defines:
+        if match.group(5):
+            return str(match.group(5))
         raise ShaderError(f"{includer}: {match.group(3)} is not defined")
-    return str(defines[match.group(3)])
+    return f"{defines[match.group(3)]}{match.group(4) or ''}"
 
 
 @functools.lru_cache(maxsize=512)

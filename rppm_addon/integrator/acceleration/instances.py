@@ -58,6 +58,28 @@ class HitPaths(enum.Enum):
     PHOTON = "photon"
     SHADOW = "shadow"
     SUBSURFACE = "subsurface"
+    LIGHT = "light"
+    """Emissive triangles of instances that shadow rays go to."""
+
+
+class HitNumbers(enum.Enum):
+    """Buffers that hold the numbers of hit triangles to be gathered: the block, and the shader that reads it."""
+
+    HITS = "Hits", "surfaces/geometry/hit_numbers.glsl"
+    LIGHTS = "LightTriangles", "surfaces/geometry/light_numbers.glsl"
+    """Triangles that shadow rays go to."""
+    SOURCES = "Rays", "surfaces/geometry/source_numbers.glsl"
+    """Triangles that rays come from."""
+
+    @property
+    def block(self) -> str:
+        """Name of the storage block."""
+        return self.value[0]
+
+    @property
+    def shader(self) -> str:
+        """File below the shader folder that gather_hits.comp includes for it."""
+        return self.value[1]
 
 
 class TriangleSources:
@@ -112,8 +134,11 @@ class InstancedMeshes:
     hit_origins: moderngl.Buffer
     first_hits: dict[HitPaths, int]
     """The first hit triangle of each list of paths, counted from first_hit_triangle."""
-    gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
-    """Makes world triangles of the hits (HIT) of active paths of a list, by the acceleration structure's blocks."""
+    gather_hits: Callable[[moderngl.Buffer, HitNumbers, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
+    """Makes world triangles of those that a buffer names for active paths of a list, by the acceleration structure's
+    blocks."""
+    has_emitters: bool
+    """True where any of the instances may emit light."""
 
     @property
     def triangle_count(self) -> int:

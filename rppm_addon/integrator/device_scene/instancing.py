@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ...materials.traits.emitted import Emits, emits
+from ...materials.traits.emitted import Emits, emits, emits_alike
 from ...materials.traits.node_rays import traces_rays
 from ...scene.materials import Material
 from ...scene.meshes import Instance
@@ -49,7 +49,9 @@ def instanced_members(scene: Scene, moved: np.ndarray, is_software: bool) -> np.
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
     These are instances of meshes that occur more than once, or that move, and that keep their shape while the shutter
-    is open; their materials neither emit light nor fill the inside with a medium. moved: MovedInstances.follow.
+    is open; their materials fill the inside with no medium. Those that emit light are such of meshes that occur more
+    than once, with materials that emit the same from all, without Light Linking, in scenes without media and shadow
+    catchers. moved: MovedInstances.follow.
     is_software: whether the processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
@@ -60,13 +62,14 @@ def instanced_members(scene: Scene, moved: np.ndarray, is_software: bool) -> np.
     is_automatic, total = wanted is Instancing.AUTOMATIC, lengths[meshes].sum() if len(meshes) else 0
     if not total or (is_automatic and total < MANY_TRIANGLES):
         return None
-    may_be = _may_be_instanced(scene, meshes)
+    glows = _glow(scene)
+    may_be = _may_be_instanced(scene, meshes) & ~(glows & ~_may_share_emitters(scene))
     counts = np.bincount(meshes[may_be], minlength=len(scene.meshes))
     shared = may_be & (counts[meshes] > 1)
     if is_automatic:
         left = lengths[meshes[~shared]].sum() + lengths[np.unique(meshes[shared])].sum()
         shared &= left <= _FRACTION_LEFT * total
-    chosen = shared | (may_be & moved)
+    chosen = shared | (may_be & moved & ~glows)
     return chosen if chosen.any() else None
 
 
@@ -102,4 +105,21 @@ def _has_media(scene: Scene) -> bool:
 
 
 def _must_be_expanded(material: Material) -> bool:
-    return material.interior is not None or emits(material.graph) is not Emits.NOTHING
+    is_dark = emits(material.graph) is Emits.NOTHING
+    return material.interior is not None or not (is_dark or emits_alike(material.graph))
+
+
+def _glow(scene: Scene) -> np.ndarray:
+    """(instances,) bool, those with a material that emits light."""
+    glowing = {index for index, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
+    if not glowing:
+        return np.zeros(len(scene.instances), bool)
+    return np.array([not glowing.isdisjoint(instance.materials) for instance in scene.instances], bool)
+
+
+def _may_share_emitters(scene: Scene) -> np.ndarray:
+    """(instances,) bool, those whose mesh may have the same emitters for all. Programs that scatter light in media, and
+    those of shadow catchers, know world triangles alone."""
+    if _has_media(scene) or any(instance.shadow_catcher for instance in scene.instances):
+        return np.zeros(len(scene.instances), bool)
+    return np.array([instance.linking is None for instance in scene.instances], bool)

@@ -16,11 +16,12 @@ from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
+from ...materials.traits.emitted import Emits, emits
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..acceleration.instances import HitPaths, InstancedMeshes, TriangleSources
+from ..acceleration.instances import HitNumbers, HitPaths, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
 from ..common.affine import affine_inverses, determinants
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
@@ -159,6 +160,12 @@ class Geometry(BufferSet):
         return 0.5 * (self.bounds_low + self.bounds_high)
 
     @property
+    def expanded(self) -> list[Placement]:
+        """Placements of the instances that are expanded to world triangles."""
+        placed = set() if self.instanced is None else set(self.instanced.placements.tolist())
+        return [placement for number, placement in enumerate(self.placements) if number not in placed]
+
+    @property
     def radius(self) -> float:
         """Radius of the bounding sphere of the bounds, meters; never zero."""
         return max(0.5 * float(np.linalg.norm(self.bounds_high - self.bounds_low)), 1e-9)
@@ -270,7 +277,8 @@ class Geometry(BufferSet):
         placement's first slot."""
         self.instanced = None
         first = next_range(self.triangle_count)
-        self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
+        has_emitters = _may_emit(scene, (self.placements[number].instance for number in placements.tolist()))
+        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, has_emitters)
         used, one, mesh_of = np.unique(which[placements], return_index=True, return_inverse=True)
         shared = [meshes[index] for index in used]
         self._objects.place(next_range(first + self._hits.count), shared, entries[placements[one]])
@@ -292,13 +300,30 @@ class Geometry(BufferSet):
             self._hits.origins.buffer,
             self._hits.first_hits,
             self._gather_hits,
+            has_emitters,
         )
 
     def _gather_hits(
-        self, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths, blocks: Mapping[str, Bindable]
+        self,
+        numbers: moderngl.Buffer,
+        kind: HitNumbers,
+        active: ActivePaths,
+        paths: HitPaths,
+        blocks: Mapping[str, Bindable],
     ) -> None:
         outputs = self.triangles, self.attributes
-        self._hits.gather(hits, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
+        self._hits.gather(numbers, kind, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
+
+    def listed_parts(self, count: int) -> list[slice]:
+        """Parts of so many triangles that gather_listed takes at a time."""
+        most = self._hits.listed_count
+        return [slice(start, min(start + most, count)) for start in range(0, count, most)]
+
+    def gather_listed(self, placement: int, triangles: np.ndarray) -> np.ndarray:
+        """Make world triangles of triangles (n,) of the mesh of a placement that is not expanded, while no paths are
+        traced; returns their numbers, (n,)."""
+        outputs = self.triangles, self.attributes
+        return self._hits.gather_listed(placement, triangles, self._inputs.blocks, outputs, self.center)
 
     def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> bool:
         """Have room for the triangles of instances, which have so many each (n,); returns whether the buffers are new.
@@ -342,6 +367,12 @@ class Geometry(BufferSet):
         if not np.isfinite(low).all():
             low = high = np.zeros(3)
         self.bounds_low, self.bounds_high = low, high
+
+
+def _may_emit(scene: Scene, instances: Iterable[Instance]) -> bool:
+    """Return True where any of the instances has a material that may emit light."""
+    glowing = {m for m, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
+    return bool(glowing) and any(not glowing.isdisjoint(instance.materials) for instance in instances)
 
 
 def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> str:
