@@ -105,10 +105,11 @@ def expand(
     name is; ``#include EMITTERS/tree.glsl or "lights/one_level/tree.glsl"`` that below the folder that it is, or the
     other file where there is no such define; ``#include <Ray>`` inserts the struct of the record, or the constants, of
     that name once; ``readonly buffer Rays;`` gets the members of the StorageBlock of that name, and before it the
-    structs of its records. Blocks, textures and images get numbers (bindings.py). Defines go after #version; ``inserts`` are texts of files that are
-    made at run time, by name. reads_texels: blocks that are only read become texel buffers; large: those of these names
-    in any case (read_as_texels). Sources with either have READS_TEXELS defined. Functions that main does not lead to
-    are left out, unless it is to be whole. beside: the other stage of the program, whose numbers hold here as well.
+    structs of its records. Blocks, textures and images get numbers (bindings.py). Defines go after #version;
+    ``inserts`` are texts of files that are made at run time, by name. reads_texels: blocks that are only read become
+    texel buffers; large: those of these names in any case (read_as_texels). Sources with either have READS_TEXELS
+    defined. Functions that main does not lead to are left out, unless it is to be whole. beside: the other stage of the
+    program, whose numbers hold here as well.
     Raises ShaderError.
     """
     defines = {**(defines or {}), **({"READS_TEXELS": 1} if reads_texels or large else {})}

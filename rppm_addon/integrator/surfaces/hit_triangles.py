@@ -107,7 +107,7 @@ class HitTriangles(BufferSet):
         first, count = self.first_hits[paths], self._counts[paths]
         ((triangles,), (attributes,)) = (buffer.ranges(count, self.first + first) for buffer in outputs)
         buffers = {**blocks, **self.blocks, kind.block: numbers, "Triangles": triangles, "Attributes": attributes}
-        defines = {"HIT_NUMBERS": kind.shader} if kind is not HitNumbers.HITS else {}
+        defines: dict[str, object] = {"HIT_NUMBERS": kind.shader} if kind is not HitNumbers.HITS else {}
         if self._has_emitters:
             defines["INSTANCED_EMITTERS"] = 1
         program = self._library.compute("surfaces/geometry/gather_hits.comp", defines)

@@ -91,13 +91,11 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
             raise DeviceError(f"no more than {STEPS:,} triangles can emit light; {LightTree.remedy}")
         refuse(count)
 
-    instanced = geometry.instanced
-    placed = 0 if instanced is None or not instanced.has_emitters else len(instanced.placements)
-    if placed > STEPS:  # their numbers are floats in triangles that rays hit
-        raise DeviceError(f"no more than {STEPS:,} instances can be placed where some emit light; {LightTree.remedy}")
-    of_meshes = instanced.triangle_count if placed else 0
+    of_instances = 0
+    if geometry.instanced is not None and geometry.instanced.has_emitters:
+        of_instances = len(geometry.instanced.placements) + geometry.instanced.triangle_count
     with contextlib.suppress(DeviceError):
-        return judge(geometry.triangle_count + placed + of_meshes)
+        return judge(geometry.triangle_count + of_instances)
     glowing = EmissiveMaterials(scene, materials)
     known_counts: dict[tuple[int, ...], int] = {}
     instances = [placement.instance for placement in geometry.expanded]
@@ -107,7 +105,7 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
             known_counts[key] = len(glowing.triangles_of(scene, instance)[1])
     counts = [known_counts[key] for key in keys]
     try:
-        judge(sum(counts) + placed + of_meshes)
+        judge(sum(counts) + of_instances)
     except DeviceError as error:
         most = objects_of_most(instances, counts)
         raise DeviceError(f"{error} (of {sum(counts):,} that do, instances counted each: {most})") from error

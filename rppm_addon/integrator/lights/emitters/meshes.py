@@ -15,8 +15,8 @@ from ..light_tree import leaf_numbers, morton_order, tree_of, triangle_leaves
 from .candidates import EmissiveMaterials, areas_of, chances, is_seen_reflected
 
 Ask = Callable[[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
-"""Returns the radiance (n, 3) of triangles of an instance: its placement, the triangles (n,), their corners (n, 3, 3) in
-the world, areas, materials, and whether their emission varies."""
+"""Returns the radiance (n, 3) of triangles of an instance: its placement, the triangles (n,), their corners (n, 3, 3)
+in the world, areas, materials, and whether their emission varies."""
 
 
 @dataclass(frozen=True)
