@@ -58,7 +58,7 @@ class ProgramLibrary:
 
     @property
     def scene_defines(self) -> dict[str, object]:
-        """What a scene has, as far as programs that are made now know it (defining)."""
+        """Defines of the scene, for programs that are made now (defining)."""
         return self._scene_defines
 
     def _defines(self, paths: Sequence[str], defines: Mapping[str, object] | None) -> dict[str, object]:

@@ -99,7 +99,7 @@ class AccelerationStructure(BufferSet):
 
     def first_hit(self, paths: HitPaths) -> int:
         """The first hit triangle of a list of paths, for kernels that trace; 0 without instances."""
-        return 0 if self._instanced is None else self._instanced.first_hits[paths]
+        return 0 if self._instanced is None else self._instanced.hits.of_paths[paths]
 
     def occluded(
         self,

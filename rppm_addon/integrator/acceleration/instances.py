@@ -82,6 +82,19 @@ class HitNumbers(enum.Enum):
         return self.value[1]
 
 
+@dataclass(frozen=True)
+class HitPlaces:
+    """Places for the triangles that paths hit, behind those of the world triangles."""
+
+    first_triangle: int
+    """Number of the first hit triangle."""
+    count: int
+    origins: moderngl.Buffer
+    """The block HitOrigins."""
+    of_paths: dict[HitPaths, int]
+    """The first hit triangle of each list of paths, counted from first_triangle."""
+
+
 class TriangleSources:
     """Meshes and places that triangles on the device are made of: equal to others of which the same ones are made."""
 
@@ -129,11 +142,8 @@ class InstancedMeshes:
     boxes: np.ndarray
     """(n, 2, 3) float64, low and high corners in the world, meters."""
     world: TriangleSources
-    first_hit_triangle: int
-    hit_triangle_count: int
-    hit_origins: moderngl.Buffer
-    first_hits: dict[HitPaths, int]
-    """The first hit triangle of each list of paths, counted from first_hit_triangle."""
+    hits: HitPlaces
+    """Places of the triangles that paths hit."""
     gather_hits: Callable[[moderngl.Buffer, HitNumbers, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
     """Makes world triangles of those that a buffer names for active paths of a list, by the acceleration structure's
     blocks."""

@@ -75,7 +75,7 @@ class Bvh(AccelerationStructure):
             self._world, self._world_margin, is_new = instanced.world, margin, True
         reach = float(scene_radius) + float(np.linalg.norm(np.fromiter(center, np.float64)))
         self._write_levels(instanced, margin, reach, is_new)
-        self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hit_origins, **self.blocks}
+        self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hits.origins, **self.blocks}
 
     def _write_levels(self, instanced: InstancedMeshes, margin: float, reach: float, is_new: bool) -> None:
         """Write the top level, and where those are new the hierarchies of the meshes and of the world triangles."""
@@ -89,8 +89,8 @@ class Bvh(AccelerationStructure):
         self._nodes.write(top, first_top * NODE.size)
         self._instances.upload(instance_records(instanced, levels.roots[instanced.which], reach))
         state = TOP_LEVEL.zeros(1)
-        state["root"], state["first_hit_triangle"] = first_top, instanced.first_hit_triangle
-        state["hit_triangle_count"] = instanced.hit_triangle_count
+        state["root"], state["first_hit_triangle"] = first_top, instanced.hits.first_triangle
+        state["hit_triangle_count"] = instanced.hits.count
         self._top_level.upload(state)
 
     @property

@@ -129,7 +129,7 @@ class DeepCubemap(AccelerationStructure):
             self._traversal_buffers = {name: blocks[name] for name in _TRAVERSAL_BLOCKS}
         else:
             levels = self._levels.traversal_blocks
-            self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hit_origins, **levels}
+            self._traversal_buffers = {"Triangles": triangles, "HitOrigins": instanced.hits.origins, **levels}
 
     @property
     def traversal_defines(self) -> dict[str, object]:

@@ -103,8 +103,8 @@ class CubemapLevels(BufferSet):
         self._states.upload(np.concatenate([[world, top], states[:mesh_count]]).astype(STATE.dtype))
         self._instances.upload(records)
         level = TOP_LEVEL.zeros(1)
-        level["first_hit_triangle"] = instanced.first_hit_triangle
-        level["hit_triangle_count"] = instanced.hit_triangle_count
+        level["first_hit_triangle"] = instanced.hits.first_triangle
+        level["hit_triangle_count"] = instanced.hits.count
         self._top_level.upload(level)
         return world
 

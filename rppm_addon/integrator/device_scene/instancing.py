@@ -63,7 +63,9 @@ def instanced_members(scene: Scene, moved: np.ndarray, is_software: bool) -> np.
     if not total or (is_automatic and total < MANY_TRIANGLES):
         return None
     glows = _glow(scene)
-    may_be = _may_be_instanced(scene, meshes) & ~(glows & ~_may_share_emitters(scene))
+    may_be = _may_be_instanced(scene, meshes)
+    if glows.any():
+        may_be &= ~glows | _may_share_emitters(scene)
     counts = np.bincount(meshes[may_be], minlength=len(scene.meshes))
     shared = may_be & (counts[meshes] > 1)
     if is_automatic:

@@ -21,7 +21,7 @@ from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.light_linking import LightLinking
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ..acceleration.instances import HitNumbers, HitPaths, InstancedMeshes, TriangleSources
+from ..acceleration.instances import HitNumbers, HitPaths, HitPlaces, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
 from ..common.affine import affine_inverses, determinants
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
@@ -295,10 +295,7 @@ class Geometry(BufferSet):
             first_materials[placements],
             self.boxes[placements],
             world,
-            self._hits.first,
-            self._hits.count,
-            self._hits.origins.buffer,
-            self._hits.first_hits,
+            HitPlaces(self._hits.first, self._hits.count, self._hits.origins.buffer, self._hits.first_hits),
             self._gather_hits,
             has_emitters,
         )

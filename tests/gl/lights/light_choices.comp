@@ -66,6 +66,6 @@ void main() {
     float u = (float(index) + 0.5) / float(parameters.count);
     LitPoint point = LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u, 0u);
     LightChoice choice = choose_light_at(point, iteration.environment_irradiance, u, next_random(random));
-    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(number_of(choice.triangle)), choice.probability,
-                          told_probability(choice, point));
+    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(number_of(choice.triangle)),
+                          choice.probability, told_probability(choice, point));
 }

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 import scenes
+from moving_scenes import open_for, way
 from rendering import radiance_of
 from support.lobes import Lobe, LobeKind, material
 from test_light_choice import CHOICES, SHADER, run
@@ -16,8 +17,8 @@ from rppm_addon.integrator.lights.emitters import meshes
 from rppm_addon.integrator.lights.emitters.instances import INSTANCED_EMITTERS
 from rppm_addon.scene import AccelerationStructure, DirectLight, Instance, Instancing, Scene, World
 from rppm_addon.scene.light_linking import LightLinking
-from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
 from rppm_addon.scene.materials import Material
+from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
 
 GLOW = material("glow", Lobe(LobeKind.EMISSION, color=(1.0, 0.7, 0.4)))
 
@@ -79,7 +80,7 @@ def emitters_of(mapper):
 @pytest.mark.parametrize("count", [2, 60])
 @pytest.mark.parametrize("others", [False, True])
 def test_choices_come_as_often_as_they_say(mapper, library, monkeypatch, count, others):
-    """Of a triangle of an instance, the product of both levels; all together come to one, but for the places in the
+    """A triangle of an instance has the product of both levels. All together come to one, but for the places in the
     tree below which nothing can shine on the point."""
     mapper.build(glowing(count, others=others))
     assert len(emitters_of(mapper).instances.leaves) == count
@@ -150,6 +151,17 @@ def test_emission_that_varies_over_a_mesh(mapper, mode):
     expected = pictures(mapper, glowing(instancing=Instancing.EXPANDED, **members), 24)
     found = pictures(mapper, glowing(**members), 24)
     assert len(emitters_of(mapper).instances.leaves) == 60
+    assert_alike(found, expected)
+
+
+def test_instances_that_move_while_the_shutter_is_open(mapper):
+    def moving(instancing: Instancing) -> Scene:
+        scene = glowing(12, instancing, photons=4096, others=False)
+        return open_for(scene, instances=[way(k, scene.instances[k].matrix, 0.3, 0.1, 0.2) for k in (2, 5)])
+
+    expected = pictures(mapper, moving(Instancing.EXPANDED), 24)
+    found = pictures(mapper, moving(Instancing.TWO_LEVELS), 24)
+    assert len(emitters_of(mapper).instances.leaves) == 12
     assert_alike(found, expected)
 
 

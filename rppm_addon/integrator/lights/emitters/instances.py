@@ -127,9 +127,9 @@ class EmitterInstances(BufferSet):
         counts = [len(mesh.nodes) for mesh in self.meshes]
         self._records["tree"][self._numbers] = first_node + part_starts(counts)[self._which]
         levels = EMITTER_LEVELS.zeros(1)
-        levels["instance_count"], levels["first_hit_triangle"] = len(self._records), instanced.first_hit_triangle
-        levels["first_light_hit"] = instanced.first_hits[HitPaths.LIGHT]
-        levels["first_photon_hit"] = instanced.first_hits[HitPaths.PHOTON]
+        levels["instance_count"], levels["first_hit_triangle"] = len(self._records), instanced.hits.first_triangle
+        levels["first_light_hit"] = instanced.hits.of_paths[HitPaths.LIGHT]
+        levels["first_photon_hit"] = instanced.hits.of_paths[HitPaths.PHOTON]
         self._instances.require_items(len(self._records))
         self._instances.write(levels)
         self._instances.write(self._records, EMITTER_LEVELS.size)
