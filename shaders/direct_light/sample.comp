@@ -20,7 +20,7 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/transparency.glsl"
 #include "common/path_history.glsl"
-#include EMITTERS/media.glsl or "direct_light/media_blocks.glsl"
+#include EMITTERS "direct_light/media.glsl"
 #include "materials/medium.glsl"
 uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -35,7 +35,7 @@ readonly buffer RadiusFactors;
 #include "camera_paths/importons/radius.glsl"
 writeonly buffer LightSplits;
 #include "camera_paths/last_vertex.glsl"
-#include EMITTERS/hits.glsl or "lights/one_level/hits.glsl"
+#include EMITTERS "lights/one_level/hits.glsl"
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
 struct Parts {

@@ -15,7 +15,7 @@ uniform Parameters { EmittersParameters parameters; };
 readonly buffer Rays;
 readonly buffer LightTriangles;
 readonly buffer Triangles;
-#include EMITTERS/traits.glsl or "lights/one_level/traits.glsl"
+#include EMITTERS "lights/one_level/traits.glsl"
 writeonly buffer EmitterRays { Ray emitter_rays[]; };
 writeonly buffer EmitterHits { Hit emitter_hits[]; };
 

@@ -91,7 +91,7 @@ bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, flo
     return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
 }
 
-#include EMITTERS/tree.glsl or "lights/one_level/tree.glsl"
+#include EMITTERS "lights/one_level/tree.glsl"
 
 // Kinds of light that a choice is made among: the light objects' tree, the emissive triangles', the environment, and
 // each sun.

@@ -11,7 +11,7 @@
 #include "lights/emissive_triangles.glsl"
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
 readonly buffer Triangles;
-#include EMITTERS/traits.glsl or "lights/one_level/traits.glsl"
+#include EMITTERS "lights/one_level/traits.glsl"
 
 #include <Lights>
 #include <LightFlags>
@@ -84,7 +84,7 @@ vec3 sampled_radiance(EmissiveTriangle emissive) {
     return (emissive.traits & EMITTER_UNEVEN) != 0u ? vec3(1.0) : emissive.radiance;
 }
 
-#include EMITTERS/emitters.glsl or "lights/one_level/emitters.glsl"
+#include EMITTERS "lights/one_level/emitters.glsl"
 
 // --- direct light ---------------------------------------------------------------------------
 

@@ -63,12 +63,13 @@ class HitPaths(enum.Enum):
 
 
 class HitNumbers(enum.Enum):
-    """Buffers that hold the numbers of hit triangles to be gathered: the block, and the shader that reads it."""
+    """Buffers that hold the numbers of hit triangles to be gathered: the block, and the folder of the shader that reads
+    it."""
 
-    HITS = "Hits", "surfaces/geometry/hit_numbers.glsl"
-    LIGHTS = "LightTriangles", "surfaces/geometry/light_numbers.glsl"
+    HITS = "Hits", "surfaces/geometry/hits"
+    LIGHTS = "LightTriangles", "surfaces/geometry/lights"
     """Triangles that shadow rays go to."""
-    SOURCES = "Rays", "surfaces/geometry/source_numbers.glsl"
+    SOURCES = "Rays", "surfaces/geometry/sources"
     """Triangles that rays come from."""
 
     @property
@@ -78,7 +79,7 @@ class HitNumbers(enum.Enum):
 
     @property
     def shader(self) -> str:
-        """File below the shader folder that gather_hits.comp includes for it."""
+        """Folder below that of shaders from which gather_hits.comp takes hit_number.glsl."""
         return self.value[1]
 
 

@@ -57,6 +57,8 @@ _FAR_VERTICES = 128.0
 """Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 _MOST_MATERIALS = 1 << 31
 """Numbers of materials where slots are given, all of which are known."""
+FARTHEST = 1e15
+"""Meters from the origin beyond which no triangle is rendered (shaders/surfaces/geometry/mesh_arrays.glsl)."""
 _BLOCK = 256
 """Vertices that are compared side by side: NumPy is slow at reducing many short rows."""
 
@@ -97,7 +99,7 @@ def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, n
             middle = middle + column * centers[:, axis, None]
             reach += np.abs(column) * halves[:, axis, None]
         low, high = middle - reach, middle + reach
-    return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
+    return low, high, (np.maximum(-low, high) < FARTHEST).all(axis=1)  # false for NaN as well
 
 
 def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
-#include EMITTERS/media.glsl or "materials/media_block.glsl"
+#include EMITTERS "camera_paths/importons/media.glsl"
 #include "materials/medium.glsl"
 uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"

@@ -23,7 +23,7 @@ writeonly buffer PhotonCells;
 writeonly buffer PhotonOrigins;
 writeonly buffer PhotonDifferentials;
 
-#include EMITTERS/hits.glsl or "lights/one_level/hits.glsl"
+#include EMITTERS "lights/one_level/hits.glsl"
 #include <GuideCells>
 #include <LightGroups>
 

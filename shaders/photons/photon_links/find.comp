@@ -14,7 +14,7 @@ uniform Parameters { PhotonLinkParameters parameters; };
 readonly buffer Rays;
 writeonly buffer PhotonLinks;
 readonly buffer Triangles;
-#include EMITTERS/traits.glsl or "lights/one_level/traits.glsl"
+#include EMITTERS "lights/one_level/traits.glsl"
 
 void main() {
     uint index = invocation_index();

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint:
 // lint: INSTANCED_EMITTERS=1
-// lint: INSTANCED_EMITTERS=1 HIT_NUMBERS=surfaces/geometry/light_numbers.glsl
-// lint: INSTANCED_EMITTERS=1 HIT_NUMBERS=surfaces/geometry/source_numbers.glsl
+// lint: INSTANCED_EMITTERS=1 HIT_NUMBERS=surfaces/geometry/lights
+// lint: INSTANCED_EMITTERS=1 HIT_NUMBERS=surfaces/geometry/sources
 // The triangles of instances that the rays of a list of paths have hit, go to or come from become world-space
 // triangles. Triangles and Attributes begin with the first hit triangle of the list.
 
@@ -18,7 +18,7 @@ uniform Parameters { GatherHitsParameters parameters; };
 readonly buffer TopLevelState;
 readonly buffer BottomLevelInstances;
 readonly buffer HitOrigins;
-#include HIT_NUMBERS or "surfaces/geometry/hit_numbers.glsl"
+#include HIT_NUMBERS "surfaces/geometry/hits/hit_number.glsl"
 
 void main() {
     uint index = active_path();

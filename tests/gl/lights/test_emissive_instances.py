@@ -204,6 +204,15 @@ def test_moving_an_instance_asks_no_material_again(mapper, monkeypatch):
     assert len(box) == 20
 
 
+def test_instances_that_lie_nowhere_emit_nothing(mapper):
+    scene = glowing(20, others=False)
+    for number, matrix in enumerate([np.full((4, 4), np.nan), scenes.placed(0.0, 0.0, 1.0, 1e20), np.zeros((4, 4))]):
+        scene.instances[1 + number] = dataclasses.replace(scene.instances[1 + number], matrix=matrix)
+    picture = radiance_of(mapper, scene, 2)
+    assert len(emitters_of(mapper).instances.leaves) == 17
+    assert np.isfinite(picture).all() and picture.max() > 0.0
+
+
 def test_what_is_linked_is_expanded(mapper):
     scene = glowing(20, others=False)
     scene.instances[3] = dataclasses.replace(scene.instances[3], linking=LightLinking(light_set_membership=2))

@@ -16,6 +16,7 @@ from ....gl.programs.programs import ProgramLibrary
 from ...acceleration.instances import HitPaths, InstancedMeshes
 from ...common.affine import determinants
 from ...surfaces.gather_inputs import part_starts
+from ...surfaces.geometry import FARTHEST
 from ..light_records import LIGHT_NODE
 from ..light_tree import widened
 from .meshes import MeshEmitters
@@ -61,7 +62,7 @@ _ROUNDING = 1e-5
 class EmitterInstances(BufferSet):
     """The emissive instances of a scene that rays place in the world.
 
-    ``leaves`` are their LIGHT_NODE records in the world, ``weights`` (n,) what each emits, W but for a factor,
+    ``leaves`` are their LIGHT_NODE records in the world; ``weights`` (n,) is what each emits, in proportion, and
     ``power`` (3,) what all do, W.
     """
 
@@ -88,10 +89,13 @@ class EmitterInstances(BufferSet):
     def place(self, instanced: InstancedMeshes | None, meshes: list[MeshEmitters], which: np.ndarray) -> None:
         """Take the instances that rays place in the world. ``meshes``: emitters; ``which``: (instances,) those of each
         instance, -1 for none."""
+        if instanced is not None and len(which):
+            with np.errstate(invalid="ignore"):  # triangles that lie nowhere, or too far off, are gathered as points
+                which = np.where((np.abs(instanced.boxes) < FARTHEST).all(axis=(1, 2)), which, -1)
         self._numbers = np.flatnonzero(which >= 0)
         self._which = which[self._numbers]
         self.meshes, self.power = meshes, np.zeros(3)
-        self.leaves, self.weights = LIGHT_NODE.zeros(len(self._numbers)), np.zeros(0)
+        self.leaves, self.weights = LIGHT_NODE.zeros(len(self._numbers)), np.zeros(len(self._numbers))
         self._records = EMITTER_INSTANCE.zeros(0)
         if instanced is None or not self.are_there:
             self._instances.release()
@@ -107,9 +111,8 @@ class EmitterInstances(BufferSet):
             records["leaves"][of_mesh], records["emitter_count"][of_mesh] = len(mesh.nodes) // 2, len(mesh.records)
             placed, scales, records["stretch"][of_mesh] = placed_roots(mesh, instanced.matrices[of_mesh])
             placed["member"] = INSTANCE_MEMBER | of_mesh
-            self.leaves[is_of_mesh] = placed
+            self.leaves[is_of_mesh], self.weights[is_of_mesh] = placed, mesh.nodes["intensity"][1] * scales
             self.power = self.power + mesh.power * scales.sum()
-        self.weights = self.leaves["intensity"].astype(np.float64)
 
     def choose(self, leaves: np.ndarray, probabilities: np.ndarray, cumulated: float, first_emitter: int) -> None:
         """Take the leaf of each emissive instance, (n,) node numbers, and the probability of choosing it; cumulated:
