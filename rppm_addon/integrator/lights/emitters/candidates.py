@@ -28,6 +28,7 @@ class EmissiveMaterials:
 
     def __init__(self, scene: Scene, materials: MaterialTables) -> None:
         self._emits, self._count = materials.emits, len(scene.materials)
+        self._varies = np.array([emits is Emits.VARYING for emits in self._emits], bool)
         self._dark = {index for index in range(self._count) if self._emits[index] is Emits.NOTHING}
         self._by_path = [
             m for m, material in enumerate(scene.materials) if m not in self._dark and asks_for_path(material.graph)
@@ -52,7 +53,7 @@ class EmissiveMaterials:
 
     def vary(self, kinds: np.ndarray) -> np.ndarray:
         """(n,) bool, whether the emission of materials (n,) varies with place or direction."""
-        return np.array([self._emits[m] is Emits.VARYING for m in kinds], bool)
+        return self._varies[kinds]
 
     def traits(self, instance: Instance, kinds: np.ndarray) -> np.ndarray:
         """(n,) EmitterTraits of triangles of an instance with materials (n,), but for UNEVEN. Smooth surfaces look for
