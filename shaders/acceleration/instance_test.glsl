@@ -12,12 +12,21 @@ uint hit_instance = NO_TRIANGLE;
 struct InstanceTest {
     RayTest triangles;
     uvec2 source_origin;  // the instance and its triangle that the ray comes from
+#if defined(SHADOW_RAYS) && defined(INSTANCED_EMITTERS)
+    uvec2 target_origin;  // that a shadow ray ends on, and is not hidden by
+#endif
 };
 
 InstanceTest make_instance_test(Ray ray, bool any_hit) {
     uvec2 origin;
     if (!find_origin(ray.source_triangle, origin)) origin = uvec2(NO_TRIANGLE);
+#if defined(SHADOW_RAYS) && defined(INSTANCED_EMITTERS)
+    uvec2 target;
+    if (!find_origin(target_triangle, target)) target = uvec2(NO_TRIANGLE);
+    return InstanceTest(make_ray_test(ray, any_hit), origin, target);
+#else
     return InstanceTest(make_ray_test(ray, any_hit), origin);
+#endif
 }
 
 bool is_on_instance(Hit hit) { return hit.triangle != NO_TRIANGLE && (hit.triangle & ON_INSTANCE) != 0u; }
@@ -39,6 +48,9 @@ bool may_hit(InstanceTest test, BottomLevelInstance instance) {
 // origin: the instance and the triangle of its mesh.
 void test_instance_triangle(InstanceTest test, BottomLevelInstance instance, uvec2 origin, inout Hit best) {
     if (origin == test.source_origin) return;
+#if defined(SHADOW_RAYS) && defined(INSTANCED_EMITTERS)
+    if (origin == test.target_origin) return;
+#endif
     vec3 v0, v1, v2;
     placed_triangle(instance, origin.y, v0, v1, v2);
 #ifdef ONE_SIDED_TRIANGLES

@@ -4,6 +4,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl INSTANCED_EMITTERS=1
 // lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl
 // The nearest hit of each shadow ray on what may be in the way of the light that it goes to.
 layout(local_size_x = 64) in;

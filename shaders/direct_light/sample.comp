@@ -7,6 +7,7 @@
 // lint: ASHIKHMIN_LOBES=1
 // lint: PORTALS=1
 // lint: COUNTS_BOUNCES=1
+// lint: EMITTERS=lights/two_levels
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
@@ -19,7 +20,7 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/transparency.glsl"
 #include "common/path_history.glsl"
-readonly buffer Media;
+#include EMITTERS "direct_light/media.glsl"
 #include "materials/medium.glsl"
 uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -33,8 +34,8 @@ writeonly buffer Contributions;
 readonly buffer RadiusFactors;
 #include "camera_paths/importons/radius.glsl"
 writeonly buffer LightSplits;
-writeonly buffer ShadowMedia;
 #include "camera_paths/last_vertex.glsl"
+#include EMITTERS "lights/one_level/hits.glsl"
 
 // What glossy and transmissive lobes add to a sum that holds the diffuse ones' as well.
 struct Parts {
@@ -103,10 +104,10 @@ struct Arriving {
     vec3 direction;
     float distance;
     uint light;
-    uint triangle;
+    EmitterNumber triangle;
 };
 
-const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_TRIANGLE);
+const Arriving NOTHING_ARRIVES = Arriving(vec3(0.0), vec3(0.0), 0.0, 0u, NO_EMITTER);
 
 vec3 fraction_of(vec3 part, vec3 whole) {
     return mix(part / max(whole, vec3(1e-35)), vec3(0.0), lessThanEqual(whole, vec3(0.0)));
@@ -155,15 +156,16 @@ Arriving arriving_reflected(uint index, Closure closure, vec3 throughput, LobeSe
                          * facet_fresnel(lobe, dot(wo, normalize(wo + sampled.direction))).reflection_probability;
         vec3 radiance = reflected * objects.chosen * objects.weights;
         add_candidate(candidates, largest(radiance),
-                      Arriving(radiance, sampled.direction, objects.distance, objects.light, NO_TRIANGLE));
-        uint emissive;
+                      Arriving(radiance, sampled.direction, objects.distance, objects.light, NO_EMITTER));
+        EmitterNumber emissive;
         Hit hit = intersect_emitters(closure.position, sampled.direction, closure.triangle, light_set, emissive);
         if (hit.triangle == NO_TRIANGLE) continue;
         if (parameters.crosses_media == 0u)
             reflected *= segment_transmittance(flags, closure.position, sampled.direction, hit.distance);
-        radiance = reflected * sampled_radiance(emissive_triangles[emissive]);
-        add_candidate(candidates, largest(reflected * emissive_triangles[emissive].radiance),
-                      Arriving(radiance, sampled.direction, hit.distance, 0u, hit.triangle));
+        EmissiveTriangle emitter = emissive_triangles[emitter_number(emissive)];
+        radiance = reflected * sampled_radiance(emitter);
+        add_candidate(candidates, largest(reflected * emitter.radiance),
+                      Arriving(radiance, sampled.direction, hit.distance, 0u, met_triangle(hit, emissive)));
     }
     candidates.chosen.radiance *= candidates.weights;
     return candidates.chosen;
@@ -209,12 +211,12 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
     bool too_far = bounces_of(path.depth) > light.max_bounces;
     // All at once, since what each branch gives back would be kept beside what others compute.
     bool arrives = choice.probability > 0.0 && !too_far && largest(sampled.weight) > 0.0
-                   && sampled.triangle != closure.triangle && side != 0.0;
+                   && sampled.triangle != hit_emitter(closure.triangle) && side != 0.0;
     if (!arrives) return NOTHING_ARRIVES;
     bool environment = light.kind == LIGHT_WORLD;
     // Of the environment, photons have to know the density as well, for which the choice at the point is none.
     float light_pdf = sampled.pdf * (environment ? light.selection_probability : choice.probability);
-    bool is_plain = sampled.triangle == NO_TRIANGLE || emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT == 0u;
+    bool is_plain = sampled.triangle == NO_EMITTER || emitter_link(sampled.triangle) == 0u;
     bool leaves = (dot(unpack_unit_vector(closure.geometric_normal), sampled.direction) > 0.0) == (side > 0.0);
     bool is_shared = gathers && leaves && light_pdf > 0.0
                      && (environment || (!gathered && is_plain && is_shared_light(light, bounces_of(path.depth))));
@@ -236,7 +238,7 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
 // others.
 uint arriving_link(Arriving arriving, bool reflected) {
     if (iteration.links_lights == 0u) return 0u;
-    if (arriving.triangle != NO_TRIANGLE) return emitter_traits(arriving.triangle) >> EMITTER_LINK_SHIFT;
+    if (arriving.triangle != NO_EMITTER) return emitter_link(arriving.triangle);
     Light light = lights[arriving.light];
     return reflected && (light.flags & LIGHT_SHADOWLESS) != 0u ? 0u : light.link;
 }
@@ -289,7 +291,7 @@ void main() {
     }
     uint link = arriving_link(arriving, takes_reflected);
     contributions[index] = vec4(parameters.sample_weight * arriving.radiance, signed_code(gathered, link));
-    light_triangles[index] = arriving.triangle;
+    light_triangles[index] = keep_sampled_emitter(arriving.triangle, index);
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);

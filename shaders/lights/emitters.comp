@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: EMITTERS=lights/two_levels
 // Where photons left emitters, or shadow rays found them, as hits of rays that look at the place. Others become
 // inactive: emitters that shine evenly need not be asked.
 
@@ -13,7 +15,7 @@ uniform Parameters { EmittersParameters parameters; };
 readonly buffer Rays;
 readonly buffer LightTriangles;
 readonly buffer Triangles;
-#include "lights/emitter_traits.glsl"
+#include EMITTERS "lights/one_level/traits.glsl"
 writeonly buffer EmitterRays { Ray emitter_rays[]; };
 writeonly buffer EmitterHits { Hit emitter_hits[]; };
 

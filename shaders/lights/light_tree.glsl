@@ -81,45 +81,17 @@ float sun_importance(LightNode sun, LitPoint point) {
 // Number of the light among lights[], and of the triangle among emissive_triangles[]. probability 0: none gives any.
 struct LightChoice {
     uint light;
-    uint triangle;
+    EmitterNumber triangle;
     float probability;
 };
 
-// Down a tree: sets the leaf's member, and returns its probability.
-float choose_leaf(uint first, uint leaves, LitPoint point, float u, float u_deep, out uint member) {
-    float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(2u * leaves - 1u), 1));
-    uint node = 1u;
-    for (uint level = 1u; node < leaves; ++level) {
-        float low = node_importance(light_nodes[first + 2u * node], point),
-              high = node_importance(light_nodes[first + 2u * node + 1u], point);
-        if (!(low + high > 0.0)) return 0.0;
-        float low_probability = low / (low + high);
-        if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
-        bool goes_low = u < low_probability;
-        u = goes_low ? u / low_probability : (u - low_probability) / (1.0 - low_probability);
-        if (level == LEVELS_OF_A_NUMBER) u = u_deep;
-        u = clamp(u, 0.0, 0.99999994);
-        probability *= goes_low ? low_probability : 1.0 - low_probability;
-        node = 2u * node + (goes_low ? 0u : 1u);
-    }
-    member = light_nodes[first + node].member;
-    return probability;
+bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, float maximum_distance) {
+    vec3 at_low = (low - origin) * inverse_direction, at_high = (high - origin) * inverse_direction;
+    vec3 enter = min(at_low, at_high), leave = max(at_low, at_high);
+    return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
 }
 
-// Probability with which choose_leaf comes to the leaf that is node `leaf` of a tree.
-float leaf_probability(uint first, uint leaves, LitPoint point, uint leaf) {
-    float probability = 1.0, even_fraction = EVEN_FRACTION_OF_TREE / float(max(findMSB(2u * leaves - 1u), 1));
-    for (int level = findMSB(leaf); level > 0; --level) {
-        uint node = leaf >> uint(level);
-        float low = node_importance(light_nodes[first + 2u * node], point),
-              high = node_importance(light_nodes[first + 2u * node + 1u], point);
-        if (!(low + high > 0.0)) return 0.0;
-        float low_probability = low / (low + high);
-        if (low > 0.0 && high > 0.0) low_probability = mix(low_probability, 0.5, even_fraction);
-        probability *= ((leaf >> uint(level - 1)) & 1u) == 0u ? low_probability : 1.0 - low_probability;
-    }
-    return probability;
-}
+#include EMITTERS "lights/one_level/tree.glsl"
 
 // Kinds of light that a choice is made among: the light objects' tree, the emissive triangles', the environment, and
 // each sun.
@@ -149,7 +121,7 @@ float chosen_environment_irradiance(vec3 position, bool gathers) {
 }
 
 // Probability with which choose_light_at comes to a light that has a place in a tree, as that leaf, or to a sun.
-float light_probability(LitPoint point, float environment_irradiance, uint kind, uint leaf) {
+float light_probability(LitPoint point, float environment_irradiance, uint kind, EmitterNumber leaf) {
     float total = 0.0, shining = 0.0, own = 0.0;
     for (uint other = 0u; other < KIND_FIRST_SUN + iteration.sun_count; ++other) {
         float importance = kind_importance(other, point, environment_irradiance);
@@ -178,7 +150,7 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
         total += importance;
         shining += importance > 0.0 ? 1.0 : 0.0;
     }
-    LightChoice choice = LightChoice(0u, 0u, 0.0);
+    LightChoice choice = LightChoice(0u, in_world(0u), 0.0);
     if (!(total > 0.0)) return choice;
     uint chosen = kinds;
     for (uint kind = 0u; kind < kinds; ++kind) {
@@ -196,23 +168,17 @@ LightChoice choose_light_at(LitPoint point, float environment_irradiance, float 
     else if (chosen >= KIND_FIRST_SUN) choice.light = light_nodes[iteration.first_sun + chosen - KIND_FIRST_SUN].member;
     else {
         bool objects = chosen == KIND_OBJECTS;
-        uint member = 0u;
+        EmitterNumber member = in_world(0u);
         choice.probability *= choose_leaf(objects ? 0u : iteration.triangle_tree,
                                           objects ? iteration.light_tree_leaves : iteration.triangle_tree_leaves, point,
                                           u, u_deep, member);
-        choice.light = objects ? member : iteration.mesh_light;
-        choice.triangle = objects ? 0u : member;
+        choice.light = objects ? emitter_number(member) : iteration.mesh_light;
+        if (!objects) choice.triangle = member;
     }
     return choice;
 }
 
 // --- light objects that a ray passes ---------------------------------------------------------------
-
-bool ray_meets_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, float maximum_distance) {
-    vec3 at_low = (low - origin) * inverse_direction, at_high = (high - origin) * inverse_direction;
-    vec3 enter = min(at_low, at_high), leave = max(at_low, at_high);
-    return max(max(enter.x, enter.y), max(enter.z, 0.0)) <= min(min(leave.x, leave.y), min(leave.z, maximum_distance));
-}
 
 // Where a ray was scattered that may meet lights, as shadow rays from there choose among these.
 struct ScatterPoint {
@@ -246,7 +212,7 @@ void intersect_light(inout IntersectedLights sum, uint number, uint kind, uint l
     if (distance <= distances.x && light.kind != LIGHT_SUN) return;
     float way = light.kind == LIGHT_SUN ? INFINITY_DISTANCE : distance - distances.x;
     if (from.pdf > 0.0 && largest(radiance) > 0.0)
-        pdf *= light_probability(from.lit, from.environment_irradiance, kind, leaf);
+        pdf *= light_probability(from.lit, from.environment_irradiance, kind, in_world(leaf));
     radiance *= segment_transmittance(media_flags, origin + distances.x * direction, direction, way)
                 * scatter_mis_weight(from.pdf, pdf);
     sum.radiance += radiance;
@@ -293,37 +259,6 @@ IntersectedLights intersect_lights(ScatterPoint from, vec3 direction, vec2 dista
             intersect_light(sum, at.member, kind, leaf, from, direction, distances, ray, media_flags);
     }
     return sum;
-}
-
-// --- emissive triangles that a ray meets ---------------------------------------------------------------
-
-// The nearest of those that smooth surfaces look for, as a hit of the watertight test; from_triangle: where the ray
-// begins, which it does not meet; on an object in a light set. emissive: its number among emissive_triangles[].
-Hit intersect_emitters(vec3 origin, vec3 direction, uint from_triangle, uint light_set, out uint emissive) {
-    Hit nearest = Hit(NO_TRIANGLE, 0.0, 0.0, INFINITY_DISTANCE);
-    if (iteration.triangle_tree_leaves == 0u) return nearest;
-    WatertightRay ray = make_watertight_ray(origin, direction);
-    vec3 inverse_direction = 1.0 / mix(direction, vec3(1e-20), lessThan(abs(direction), vec3(1e-20)));
-    uint node = 1u;
-    do {
-        LightNode at = light_nodes[iteration.triangle_tree + node];
-        bool met = at.intensity > 0.0 && ray_meets_box(at.low, at.high, origin, inverse_direction, nearest.distance);
-        if (met && node < iteration.triangle_tree_leaves) {
-            node *= 2u;
-            continue;
-        }
-        uint triangle = met ? emissive_triangles[at.member].triangle : NO_TRIANGLE;
-        met = met && has_set(at.light_sets, light_set);
-        if (met && triangle != from_triangle && (emissive_triangles[at.member].traits & EMITTER_REFLECTED) != 0u) {
-            vec3 v0, v1, v2;
-            triangle_corners(triangle, v0, v1, v2);
-            intersect_triangle(ray, triangle, v0, v1, v2, nearest);
-            if (nearest.triangle == triangle) emissive = at.member;
-        }
-        node += 1u;
-        node >>= uint(findLSB(node));
-    } while (node > 1u);
-    return nearest;
 }
 
 // Radiance of the light objects that a ray intersects on its way through a medium. from: where it was scattered.

@@ -8,10 +8,10 @@
 #include "common/world_light.glsl"
 #include "common/spherical_triangle.glsl"
 #include "common/ray_kinds.glsl"
-readonly buffer EmissiveTriangles;
+#include "lights/emissive_triangles.glsl"
 // Fourth components: of an emissive triangle's second corner, the probability of choosing it among all of them.
 readonly buffer Triangles;
-#include "lights/emitter_traits.glsl"
+#include EMITTERS "lights/one_level/traits.glsl"
 
 #include <Lights>
 #include <LightFlags>
@@ -73,16 +73,6 @@ uint choose_light(float u) {
     return low;
 }
 
-uint search_emissive_triangle(float u) {
-    uint low = 0u, high = uint(iteration.emissive_triangle_count) - 1u;
-    while (low < high) {
-        uint middle = (low + high) / 2u;
-        if (emissive_triangles[middle].cumulated > u) high = middle;
-        else low = middle + 1u;
-    }
-    return low;
-}
-
 void triangle_corners(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {
     v0 = triangle_vertices[3u * triangle].xyz;
     v1 = triangle_vertices[3u * triangle + 1u].xyz;
@@ -94,27 +84,7 @@ vec3 sampled_radiance(EmissiveTriangle emissive) {
     return (emissive.traits & EMITTER_UNEVEN) != 0u ? vec3(1.0) : emissive.radiance;
 }
 
-struct TrianglePoint {
-    vec3 position;
-    vec3 normal;
-    uint triangle;
-    vec3 radiance;
-    float pdf;
-    float ray_offset;
-};
-
-// A point on the emissive meshes with its pdf by area.
-TrianglePoint sample_emissive_triangle(float u_triangle, vec2 u) {
-    uint index = search_emissive_triangle(u_triangle);
-    EmissiveTriangle emissive = emissive_triangles[index];
-    vec3 v0, v1, v2;
-    triangle_corners(emissive.triangle, v0, v1, v2);
-    float root = sqrt(u.x);
-    vec3 position = (1.0 - root) * v0 + root * (1.0 - u.y) * v1 + root * u.y * v2;
-    vec3 normal = normalize(cross(v1 - v0, v2 - v0));
-    return TrianglePoint(position, normal, emissive.triangle, sampled_radiance(emissive),
-                         emissive.probability / max(emissive.area, 1e-30), ray_offset(normal, v0, v1, v2));
-}
+#include EMITTERS "lights/one_level/emitters.glsl"
 
 // --- direct light ---------------------------------------------------------------------------
 
@@ -124,11 +94,11 @@ struct LightSample {
     vec3 direction;
     float distance;
     vec3 weight;
-    uint triangle;
+    EmitterNumber triangle;
     float pdf;
 };
 
-const LightSample NO_LIGHT_SAMPLE = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_TRIANGLE, 0.0);
+const LightSample NO_LIGHT_SAMPLE = LightSample(vec3(0.0, 0.0, 1.0), 0.0, vec3(0.0), NO_EMITTER, 0.0);
 
 // Where a shadow ray to a light ends, meters: short of it by what rounding may move a surface that it lies in.
 float shadow_ray_length(float distance) {
@@ -156,7 +126,7 @@ float far_side(Light light, vec3 to_center, vec3 direction) {
 LightSample sample_from_within(Light light, vec3 to_center, vec2 u) {
     vec3 direction = sample_sphere(u);
     return LightSample(direction, far_side(light, to_center, direction),
-                       4.0 / (light.radius * light.radius) * light.strength, NO_TRIANGLE, 1.0 / (4.0 * PI));
+                       4.0 / (light.radius * light.radius) * light.strength, NO_EMITTER, 1.0 / (4.0 * PI));
 }
 
 // Toward a sun, a sphere, or the disk of a soft light that faces the point: a direction within a cone.
@@ -284,9 +254,9 @@ float area_light_pdf(Light light, vec3 point, vec3 to_light) {
 }
 
 // Toward an emissive triangle, or an area light, which is two triangles that share an edge.
-LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+LightSample sample_surface_light(Light light, EmitterNumber emitter, vec3 point, vec2 u) {
     LightSample result;
-    result.triangle = NO_TRIANGLE;
+    result.triangle = NO_EMITTER;
     bool mesh = light.kind == LIGHT_MESH;
     vec3 to_light, radiance = vec3(0.0), offset = light.position - point;
     Light part = light;
@@ -297,12 +267,7 @@ LightSample sample_surface_light(Light light, uint emissive_triangle, vec3 point
     } else if (mesh || sampled_by_solid_angle(part, point)) {
         vec3 v0 = area_light_corner(part, 1.0, -1.0), v1 = area_light_corner(part, -1.0, 1.0),
              v2 = area_light_corner(part, -1.0, -1.0), other = area_light_corner(part, 1.0, 1.0);
-        if (mesh) {
-            EmissiveTriangle emissive = emissive_triangles[emissive_triangle];
-            triangle_corners(emissive.triangle, v0, v1, v2);
-            radiance = sampled_radiance(emissive);
-            result.triangle = emissive.triangle;
-        }
+        if (mesh) radiance = sampled_radiance(read_emitter(emitter, result.triangle, v0, v1, v2));
         vec2 angles = vec2(triangle_solid_angle(point, v0, v1, v2), 0.0);
         if (!mesh) angles.y = triangle_solid_angle(point, v0, v1, other);
         float total = angles.x + angles.y, chosen = u.x * total;
@@ -356,9 +321,9 @@ LightSample world_through_portals(LightSample result, uint portal, vec3 point) {
 #endif
 
 // Surfaces first, since they need most registers: what else there is would be kept beside.
-LightSample sample_light_at_one_meter(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+LightSample sample_light_at_one_meter(Light light, EmitterNumber emitter, vec3 point, vec2 u) {
     bool cone = light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT || light.kind == LIGHT_SUN;
-    if (!cone && light.kind != LIGHT_WORLD) return sample_surface_light(light, emissive_triangle, point, u);
+    if (!cone && light.kind != LIGHT_WORLD) return sample_surface_light(light, emitter, point, u);
     if (cone) return sample_cone_light(light, point, u);
     LightSample result = NO_LIGHT_SAMPLE;
     result.direction = sample_directions(directions_of(light), u, result.pdf);
@@ -398,12 +363,12 @@ vec3 sample_facing_half(float radius, vec3 direction, vec2 u) {
 }
 
 // Of the emissive meshes: of one triangle, by its number among emissive_triangles[].
-LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u) {
+LightSample sample_light(Light light, EmitterNumber emitter, vec3 point, vec2 u) {
 #ifdef PORTALS
     bool world = light.kind == LIGHT_WORLD;
     uint portal = enter_portal(light, point, u.x);
 #endif
-    LightSample result = sample_light_at_one_meter(light, emissive_triangle, point, u);
+    LightSample result = sample_light_at_one_meter(light, emitter, point, u);
 #ifdef PORTALS
     if (world) result = world_through_portals(result, portal, point);
 #endif
@@ -416,10 +381,10 @@ LightSample sample_light(Light light, uint emissive_triangle, vec3 point, vec2 u
 // Of the emissive meshes: of any triangle, by its probability.
 LightSample sample_whole_light(Light light, vec3 point, float u_choice, vec2 u) {
     bool mesh = light.kind == LIGHT_MESH;
-    uint index = mesh ? search_emissive_triangle(u_choice) : 0u;
-    LightSample result = sample_light(light, index, point, u);
+    float probability = 1.0;
+    EmitterNumber emitter = mesh ? choose_emitter(u_choice, u, probability) : in_world(0u);
+    LightSample result = sample_light(light, emitter, point, u);
     if (mesh) {
-        float probability = emissive_triangles[index].probability;
         result.pdf *= probability;
         result.weight /= probability;
     }

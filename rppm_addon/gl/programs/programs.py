@@ -56,6 +56,11 @@ class ProgramLibrary:
         finally:
             self._scene_defines = before
 
+    @property
+    def scene_defines(self) -> dict[str, object]:
+        """Defines of the scene, for programs that are made now (defining)."""
+        return self._scene_defines
+
     def _defines(self, paths: Sequence[str], defines: Mapping[str, object] | None) -> dict[str, object]:
         """Return the defines of programs of files: those given, and those of the scene that their sources ask for."""
         given = dict(defines or {})

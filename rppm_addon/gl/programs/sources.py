@@ -5,7 +5,7 @@ import functools
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from ..buffers.constants import Constants
 from ..buffers.records import Record
@@ -19,7 +19,7 @@ _PACKAGE = Path(__file__).resolve().parents[2]
 SHADER_FOLDER = next(folder for folder in (_PACKAGE / "shaders", _PACKAGE.parent / "shaders") if folder.is_dir())
 """In the package where pip installed it, else beside it: in a checkout and in Blender's extension."""
 
-_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+))\s*$')
+_INCLUDE = re.compile(r'^\s*#\s*include\s+(?:"([^"]+)"|<(\w+)>|([A-Z_]+)(?:\s+"([^"]+)")?)\s*$')
 _VERSION = re.compile(r"^\s*#\s*version\b")
 _BLOCK = re.compile(r"^((?:\w+\s+)*buffer\s+(\w+))\s*([;{].*)$")
 _PARAMETERS = re.compile(r"\buniform\s+Parameters\s*\{\s*(\w+)\s+\w+\s*;")
@@ -102,12 +102,14 @@ def expand(
     """Read a shader below the shader folder and resolve its includes.
 
     ``#include "common/x.glsl"`` inserts a file once; ``#include TRAVERSAL`` inserts the file that the define of that
-    name is; ``#include <Ray>`` inserts the struct of the record, or the constants, of that name once; ``readonly buffer
-    Rays;`` gets the members of the StorageBlock of that name, and before it the structs of its records. Blocks,
-    textures and images get numbers (bindings.py). Defines go after #version; ``inserts`` are texts of files that are
-    made at run time, by name. reads_texels: blocks that are only read become texel buffers; large: those of these names
-    in any case (read_as_texels). Sources with either have READS_TEXELS defined. Functions that main does not lead to
-    are left out, unless it is to be whole. beside: the other stage of the program, whose numbers hold here as well.
+    name is; ``#include EMITTERS "lights/one_level/tree.glsl"`` this file, or the one of its name in the folder that
+    the define is, where there is one; ``#include <Ray>`` inserts the struct of the record, or the constants, of that
+    name once; ``readonly buffer Rays;`` gets the members of the StorageBlock of that name, and before it the
+    structs of its records. Blocks, textures and images get numbers (bindings.py). Defines go after #version;
+    ``inserts`` are texts of files that are made at run time, by name. reads_texels: blocks that are only read become
+    texel buffers; large: those of these names in any case (read_as_texels). Sources with either have READS_TEXELS
+    defined. Functions that main does not lead to are left out, unless it is to be whole. beside: the other stage of the
+    program, whose numbers hold here as well.
     Raises ShaderError.
     """
     defines = {**(defines or {}), **({"READS_TEXELS": 1} if reads_texels or large else {})}
@@ -190,9 +192,12 @@ def _included_file(match: re.Match, defines: Mapping[str, object], includer: str
     """The file that an #include names, itself or by a define. Raises ShaderError where there is no such define."""
     if match.group(1):
         return str(match.group(1))
-    if match.group(3) not in defines:
-        raise ShaderError(f"{includer}: {match.group(3)} is not defined")
-    return str(defines[match.group(3)])
+    define, other = match.group(3), match.group(4)
+    if define not in defines:
+        if not other:
+            raise ShaderError(f"{includer}: {define} is not defined")
+        return str(other)
+    return f"{defines[define]}/{PurePosixPath(other).name}" if other else str(defines[define])
 
 
 @functools.lru_cache(maxsize=512)

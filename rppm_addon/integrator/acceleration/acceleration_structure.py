@@ -12,7 +12,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.records.rays import HIT, RAY  # noqa: F401  the kernels have blocks of them
 from ..common.records.triangles import TRIANGLE_VERTICES  # noqa: F401  likewise
-from .instances import HitPaths, InstancedMeshes
+from .instances import HitNumbers, HitPaths, InstancedMeshes
 
 MARGIN = 2.0**-20
 """How far cells and boxes are widened, in radii of the scene. That is thirty times the rounding error of float
@@ -66,7 +66,9 @@ class AccelerationStructure(BufferSet):
     def traversal_defines(self) -> dict[str, object]:
         """Defines of kernels which include TRAVERSAL."""
         one_sided: dict[str, object] = {"ONE_SIDED_TRIANGLES": 1} if self._has_one_sided else {}
-        return {"TRAVERSAL": self.shader, **one_sided}
+        has_emitters = self._instanced is not None and self._instanced.has_emitters
+        targets: dict[str, object] = {"INSTANCED_EMITTERS": 1} if has_emitters else {}
+        return {"TRAVERSAL": self.shader, **one_sided, **targets}
 
     def trace(
         self, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths = HitPaths.CAMERA
@@ -81,8 +83,19 @@ class AccelerationStructure(BufferSet):
 
     def gather_hits(self, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths) -> None:
         """Make world triangles of hits (HIT) on instances, for all that reads these."""
+        self._gather(hits, HitNumbers.HITS, active, paths)
+
+    def gather_lights(self, triangles: moderngl.Buffer, active: ActivePaths) -> None:
+        """Make world triangles of the emissive triangles (uint) of instances that active paths' shadow rays go to."""
+        self._gather(triangles, HitNumbers.LIGHTS, active, HitPaths.LIGHT)
+
+    def gather_sources(self, rays: moderngl.Buffer, active: ActivePaths, paths: HitPaths) -> None:
+        """Make world triangles of the triangles of instances that active paths' rays (RAY) come from."""
+        self._gather(rays, HitNumbers.SOURCES, active, paths)
+
+    def _gather(self, numbers: moderngl.Buffer, kind: HitNumbers, active: ActivePaths, paths: HitPaths) -> None:
         if self._instanced is not None:
-            self._instanced.gather_hits(hits, active, paths, self.traversal_buffers)
+            self._instanced.gather_hits(numbers, kind, active, paths, self.traversal_buffers)
 
     def first_hit(self, paths: HitPaths) -> int:
         """The first hit triangle of a list of paths, for kernels that trace; 0 without instances."""

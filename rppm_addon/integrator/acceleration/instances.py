@@ -58,6 +58,29 @@ class HitPaths(enum.Enum):
     PHOTON = "photon"
     SHADOW = "shadow"
     SUBSURFACE = "subsurface"
+    LIGHT = "light"
+    """Emissive triangles of instances that shadow rays go to."""
+
+
+class HitNumbers(enum.Enum):
+    """Buffers that hold the numbers of hit triangles to be gathered: the block, and the folder of the shader that reads
+    it."""
+
+    HITS = "Hits", "surfaces/geometry/hits"
+    LIGHTS = "LightTriangles", "surfaces/geometry/lights"
+    """Triangles that shadow rays go to."""
+    SOURCES = "Rays", "surfaces/geometry/sources"
+    """Triangles that rays come from."""
+
+    @property
+    def block(self) -> str:
+        """Name of the storage block."""
+        return self.value[0]
+
+    @property
+    def shader(self) -> str:
+        """Folder below that of shaders from which gather_hits.comp takes hit_number.glsl."""
+        return self.value[1]
 
 
 @dataclass(frozen=True)
@@ -126,8 +149,11 @@ class InstancedMeshes:
     world: TriangleSources
     hits: HitPlaces
     """Places of the triangles that paths hit."""
-    gather_hits: Callable[[moderngl.Buffer, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
-    """Makes world triangles of the hits (HIT) of active paths of a list, by the acceleration structure's blocks."""
+    gather_hits: Callable[[moderngl.Buffer, HitNumbers, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
+    """Makes world triangles of those that a buffer names for active paths of a list, by the acceleration structure's
+    blocks."""
+    has_emitters: bool
+    """True where any of the instances may emit light."""
 
     def has_rows_of(self, before: "InstancedMeshes") -> bool:
         """True where the rows are those of the same instances, with the same meshes at the same places."""

@@ -20,6 +20,7 @@ from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, aov_channels, band_pixels, exiting_pixels
 from ..density_estimation.stored_photons import CameraRaster, SplatTargets
 from ..device_scene.stage_context import StageContext
+from ..lights.emitters.programs import EmitterProgram
 from ..surfaces.resolve import CameraPaths
 
 Record("ScatterImportonsParameters", segment="uint", first_pixel="uint")
@@ -49,7 +50,7 @@ class Importons(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._scatter = library.compute("camera_paths/importons/scatter.comp")
+        self._scatter = EmitterProgram(library, "camera_paths/importons/scatter.comp")
         self._lit_closures = self.exit_closures if sizes.has_subsurface else self.closures
         self._opaque = np.tile(np.array([0, 0, 0, 1], np.float32), (band_pixels(sizes), 1)).tobytes()
 
@@ -94,7 +95,7 @@ class Importons(Stage):
         """Add emission, leave importons, and sample the rays of the next segment."""
         with context.timers.stage("camera scattering"):
             self.active.run(
-                self._scatter,
+                self._scatter.of(context.lights.emitters.instances),
                 {**context.blocks, **self.lit_blocks},
                 {"segment": segment, "first_pixel": band.first_pixel},
             )

@@ -28,6 +28,8 @@ class InstanceColumns:
         """(n,) the RayVisibility of each."""
         self.sets = np.zeros(0, np.int64)
         """(n,) the sets of lights that shine on each, and of shadows that it stops, in the lower bits of codes."""
+        self.are_linked, self.catch_shadows = np.zeros((2, 0), bool)
+        """(n,) True where an instance has Light Linking, and where it is a shadow catcher."""
         self.matrices = np.zeros((0, 4, 4))
         """(n, 4, 4) object to world."""
         self._numbers: dict[tuple[int, ...], int] = {}
@@ -39,6 +41,7 @@ class InstanceColumns:
             self._numbers.clear()
             self.meshes, self.materials = np.zeros((2, count), np.int64)
             self.visibility, self.sets = np.zeros((2, count), np.int64)
+            self.are_linked, self.catch_shadows = np.zeros((2, count), bool)
             self.matrices = np.zeros((count, 4, 4))
             rows = np.arange(count)
         else:
@@ -48,12 +51,19 @@ class InstanceColumns:
         self.meshes[rows] = column(some, "mesh", np.int64)
         self.visibility[rows] = column(some, "visibility", np.int64)
         self.sets[rows] = column(some, "linking", np.int64, _packed_sets)
+        self.are_linked[rows] = column(some, "linking", bool, lambda linking: linking is not None)
+        self.catch_shadows[rows] = column(some, "shadow_catcher", bool)
         self.materials[rows] = numbered(map(operator.attrgetter("materials"), some), self._numbers)
         self.material_lists = list(self._numbers)
         if some:
             self.matrices[rows] = np.array([instance.matrix for instance in some], np.float64)
         self._instances = list(instances)
         return rows
+
+    def have(self, materials: set[int]) -> np.ndarray:
+        """(n,) bool, the instances with any of these materials."""
+        lists = np.array([not materials.isdisjoint(of_slots) for of_slots in self.material_lists], bool)
+        return lists[self.materials]
 
 
 def column(members: Sequence, name: str, dtype: type, of_value: Callable[[Any], float] | None = None) -> np.ndarray:

@@ -22,12 +22,10 @@ from ...scene.scene import Scene
 from ...scene.storage.sharing import changed_members, same_members
 from ..common.instance_columns import column
 from ..surfaces.geometry import finite_bounds
-from ..surfaces.placements import placed_boxes
+from ..surfaces.placements import FARTHEST, placed_boxes
 
 CELL = 256.0
 """Meters between places to count from: within half of it coordinates have steps of less than 8 micrometers."""
-_FARTHEST = 1e15
-"""Meters from which on nothing is rendered (placed_boxes)."""
 
 
 _AT_ONCE = 1 << 15
@@ -92,7 +90,7 @@ class Centering:
             return np.zeros(3)
         matrix = scene.camera.matrix if texels is None else scene.instances[texels.instance].matrix
         place = np.asarray(matrix, np.float64)[:3, 3]
-        if not (np.abs(place) < _FARTHEST).all() or not _cell(place).any():
+        if not (np.abs(place) < FARTHEST).all() or not _cell(place).any():
             return np.zeros(3)
         low, high = self._bounds.of(scene)
         return _cell(place if (low > high).any() else np.clip(place, low, high))

@@ -160,6 +160,7 @@ class DeviceScene:
         if changes.materials:
             with self._collect_warnings("materials"):
                 self.materials.build(scene)
+            self.lights.emitters.meshes.forget()
 
     def _build_parts(self, changes: Changes, photons: int, keep_learned: bool = False) -> None:
         """Build all that rests on the scene's members that have changed, except for materials, displacement and the

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ...materials.traits.emitted import Emits, emits
+from ...materials.traits.emitted import Emits, emits, emits_alike
 from ...materials.traits.node_rays import traces_rays
 from ...scene.materials import Material
 from ...scene.meshes import Instance
@@ -52,8 +52,10 @@ def instanced_members(
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
     These are instances of meshes that occur more than once, or that move, and that keep their shape while the shutter
-    is open; their materials neither emit light nor fill the inside with a medium. columns: of the scene's instances, at
-    any moment; moved: MovedInstances.follow. is_software: whether the processor stands in for a GPU.
+    is open; their materials fill the inside with no medium. Those that emit light are such of meshes that occur more
+    than once, with materials that emit the same from all, without Light Linking, in scenes without media and shadow
+    catchers. columns: of the scene's instances, at any moment; moved: MovedInstances.follow. is_software: whether the
+    processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
     if wanted is Instancing.EXPANDED or not _may_have_two_levels(scene, is_software):
@@ -63,13 +65,16 @@ def instanced_members(
     is_automatic, total = wanted is Instancing.AUTOMATIC, lengths[meshes].sum() if len(meshes) else 0
     if not total or (is_automatic and total < MANY_TRIANGLES):
         return None
+    glows = _glow(scene, columns)
     may_be = _may_be_instanced(scene, columns)
+    if glows.any():
+        may_be &= ~glows | _may_share_emitters(scene, columns)
     counts = np.bincount(meshes[may_be], minlength=len(scene.meshes))
     shared = may_be & (counts[meshes] > 1)
     if is_automatic:
         left = lengths[meshes[~shared]].sum() + lengths[counts > 1].sum()
         shared &= left <= _FRACTION_LEFT * total
-    chosen = shared | (may_be & moved)
+    chosen = shared | (may_be & moved & ~glows)
     return chosen if chosen.any() else None
 
 
@@ -78,8 +83,7 @@ def _may_be_instanced(scene: Scene, columns: InstanceColumns) -> np.ndarray:
     excluded = {index for index, material in enumerate(scene.materials) if _must_be_expanded(material)}
     bending = {deformation.mesh for deformation in scene.shutter.meshes} if scene.shutter is not None else set()
     whole = np.array([index not in bending and mesh.volume is None for index, mesh in enumerate(scene.meshes)])
-    plain = np.array([excluded.isdisjoint(materials) for materials in columns.material_lists])
-    return whole[columns.meshes] & plain[columns.materials]
+    return whole[columns.meshes] & ~columns.have(excluded)
 
 
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
@@ -105,4 +109,20 @@ def _has_media(scene: Scene) -> bool:
 
 
 def _must_be_expanded(material: Material) -> bool:
-    return material.interior is not None or emits(material.graph) is not Emits.NOTHING
+    is_dark = emits(material.graph) is Emits.NOTHING
+    return material.interior is not None or not (is_dark or emits_alike(material.graph))
+
+
+def _glow(scene: Scene, columns: InstanceColumns) -> np.ndarray:
+    """(instances,) bool, those with a material that emits light."""
+    return columns.have(
+        {index for index, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
+    )
+
+
+def _may_share_emitters(scene: Scene, columns: InstanceColumns) -> np.ndarray:
+    """(instances,) bool, those whose mesh may have the same emitters for all. Programs that scatter light in media, and
+    those of shadow catchers, know world triangles alone."""
+    if _has_media(scene) or columns.catch_shadows.any():
+        return np.zeros(len(scene.instances), bool)
+    return ~columns.are_linked

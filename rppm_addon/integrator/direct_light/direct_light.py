@@ -21,6 +21,7 @@ from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels, grouped_pixels, split_pixels
 from ..device_scene.stage_context import StageContext
+from ..lights.emitters.programs import EmitterProgram
 
 LIGHT_SPLIT = Record("LightSplit", glossy="vec3", light="uint", transmission="vec3", unused="float")
 """Fractions of the light of a shadow ray that glossy and transmission lobes scatter, by channel; the rest is diffuse.
@@ -77,7 +78,7 @@ class DirectLight(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._sample = library.compute("direct_light/sample.comp")
+        self._sample = EmitterProgram(library, "direct_light/sample.comp")
         if sizes.features.has_media:
             self._sample_in_media = library.compute("media/in_scattering/sample_lights.comp")
         self._soften = library.compute("direct_light/terminator.comp")
@@ -105,7 +106,14 @@ class DirectLight(Stage):
         with context.timers.stage("direct light"):
             for ray in range(iteration.shadow_rays):
                 self._sample_lights(
-                    self._sample, context, importons, band, iteration, segment, ray, iteration.shadow_rays
+                    self._sample.of(context.lights.emitters.instances),
+                    context,
+                    importons,
+                    band,
+                    iteration,
+                    segment,
+                    ray,
+                    iteration.shadow_rays,
                 )
                 self._cast(context, importons, iteration, segment, context.resolve.has_terminators)
 
@@ -134,6 +142,8 @@ class DirectLight(Stage):
         active.take(importons.active, self._rays.buffer)
         if active.known_empty:
             return
+        if context.lights.emitters.instances.are_there:
+            context.acceleration.gather_lights(self.triangles.buffer, active)
         if has_terminators:
             self._soften_terminator(context, importons)
         context.lights.emitters.tint_contributions(

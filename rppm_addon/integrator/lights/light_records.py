@@ -109,7 +109,8 @@ EMISSIVE_TRIANGLE = Record(
 )
 """A world triangle that emits: its radiance, or its mean where the material has it vary; its area; the probability of
 choosing it, and that of choosing it or one before; its EmitterTraits, and from bit EMITTER_LINK_SHIFT on its
-LightLink."""
+LightLink. The meshes of instances that rays place in the world have a record for each triangle: ``triangle`` is its
+leaf, the area is that in object space, and the probability that within the mesh."""
 StorageBlock("EmissiveTriangles", "EmissiveTriangle emissive_triangles[];")
 LIGHT_NODE = Record(
     "LightNode",
@@ -125,7 +126,8 @@ LIGHT_NODE = Record(
 )
 """Lights below a node of the light tree: their box, meters; the sum of their intensities, W/sr, of a sun its
 irradiance, W/m^2; the cone of the directions that they face (of a sun its disk); how far from those they shine; of a
-leaf the number of its light or emissive triangle; and the bits of the light sets that any of them shines on."""
+leaf the number of its light or emissive triangle, or that of an instance (emitters/instances.py); and the bits of the
+light sets that any of them shines on."""
 LIGHT_LINK = Record("LightLink", light_sets="uvec2", shadow_sets="uvec2")
 """Bits of the sets of objects that lights shine on and that cast shadows in their light (scene/light_linking.py)."""
 StorageBlock("LightLinks", "LightLink light_links[];")

@@ -8,6 +8,7 @@ nodes from n on. So any number of lights that move is built anew in a few array 
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -22,7 +23,8 @@ _SLACK = 1e-5
 
 
 class LightTree(BufferSet):
-    """Nodes of two trees, of light objects and of emissive triangles, and of the suns, in one buffer.
+    """Nodes of two trees, of light objects and of emissive triangles, of the suns, and of the trees of meshes whose
+    instances are leaves of the second tree (emitter_instances.py), in one buffer.
 
     Each tree's root is node 1 behind its first; ``parameters`` are the values of LIGHT_TREE_PARAMETERS.
     """
@@ -34,13 +36,21 @@ class LightTree(BufferSet):
         super().__init__(context, library, sizes)
         self.parameters: dict[str, int] = {}
 
-    def build(self, lights: np.ndarray, triangles: np.ndarray, order: np.ndarray, light_sets: np.ndarray) -> None:
-        """Take the lights (LIGHT records), the leaves of the emissive triangles (triangle_leaves, with their light
-        sets) and their order (morton_order), and by the numbers of links the bits of the light sets, (n, 2)."""
+    def build(
+        self,
+        lights: np.ndarray,
+        triangles: np.ndarray,
+        order: np.ndarray,
+        light_sets: np.ndarray,
+        mesh_trees: Sequence[np.ndarray] = (),
+    ) -> int:
+        """Take the lights (LIGHT records), the leaves of the emissive triangles and instances (with their light sets)
+        and their order (morton_order), by the numbers of links the bits of the light sets, (n, 2), and the trees of
+        the instances' meshes. Returns the node with which the first of these begins."""
         near, suns = light_leaves(lights), sun_leaves(lights)
         for leaves in (near, suns):
             leaves["light_sets"] = light_sets[lights["link"][leaves["member"]]]
-        parts = [tree_of(near), tree_of(triangles, order), suns]
+        parts = [tree_of(near), tree_of(triangles, order), suns, *mesh_trees]
         firsts = np.cumsum([0] + [len(part) for part in parts])
         self.parameters = {
             "light_tree_leaves": len(parts[0]) // 2,
@@ -54,6 +64,7 @@ class LightTree(BufferSet):
         self.nodes.require_items(int(firsts[-1]))
         for first, part in zip(firsts.tolist(), parts):  # of millions of triangles, no copy of all together
             self.nodes.write(part, LIGHT_NODE.size * first)
+        return int(firsts[3])
 
     def refuse(self, lights: int, triangles: int) -> None:
         """Raise DeviceError where the device has no room for so many emissive triangles beside so many lights."""
@@ -80,7 +91,7 @@ def light_leaves(lights: np.ndarray) -> np.ndarray:
     point, spot = lights["kind"] == LightShape.POINT, lights["kind"] == LightShape.SPOT
     area = ~(point | spot)
     reach = np.where(area[:, None], np.abs(lights["axis_u"]) + np.abs(lights["axis_v"]), lights["radius"][:, None])
-    leaves["low"], leaves["high"] = _widened(lights["position"] - reach, lights["position"] + reach)
+    leaves["low"], leaves["high"] = widened(lights["position"] - reach, lights["position"] + reach)
     spread = area & (lights["spread_tangent"] > 0)
     straight_on = np.where(spread, lights["spread_tangent"] * lights["spread_scale"], 1.0)
     leaves["intensity"] = np.abs(lights["strength"]).mean(axis=1) * np.where(area, lights["area"] * straight_on, 1.0)
@@ -106,7 +117,7 @@ def triangle_leaves(emissive: np.ndarray, corners: np.ndarray) -> np.ndarray:
     sides."""
     leaves = LIGHT_NODE.zeros(len(emissive))
     leaves["member"] = np.arange(len(emissive))
-    leaves["low"], leaves["high"] = _widened(corners.min(axis=1), corners.max(axis=1))
+    leaves["low"], leaves["high"] = widened(corners.min(axis=1), corners.max(axis=1))
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     leaves["axis"] = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     leaves["intensity"] = np.abs(emissive["radiance"]).mean(axis=1) * emissive["area"]
@@ -143,7 +154,8 @@ def tree_of(leaves: np.ndarray, order: np.ndarray | None = None) -> np.ndarray:
     return nodes
 
 
-def _widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Low and high corners (n, 3) of boxes that are wider by what rounding may move."""
     slack = _SLACK * np.maximum(np.abs(low), np.abs(high)).max(axis=1, keepdims=True, initial=0.0) + 1e-9
     return low - slack, high + slack
 

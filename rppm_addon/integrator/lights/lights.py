@@ -20,7 +20,8 @@ from ..common.require import require
 from ..surfaces.geometry import Geometry
 from ..surfaces.resolve import Resolve
 from .caustic_casters import caustic_targets
-from .emitters import Emitters, refuse_too_many
+from .emitters.candidates import refuse_too_many
+from .emitters.emitters import Emitters
 from .environment import Environment
 from .guide import Guide
 from .light_list import LightList
@@ -208,7 +209,9 @@ class Lights(BufferSet):
         self.links.upload(lights.links.records)
         sets = lights.links.records["light_sets"]
         self.emitters.leaves["light_sets"] = sets[self.emitters.links]
-        self._light_tree.build(self.table, self.emitters.leaves, self.emitters.order, sets)
+        trees = [mesh.nodes for mesh in self.emitters.instances.meshes]
+        first_tree = self._light_tree.build(self.table, self.emitters.leaves, self.emitters.order, sets, trees)
+        self.emitters.instances.upload(geometry.instanced, first_tree)
         self.emitters.leaves = LIGHT_NODE.zeros(0)  # as large as the triangles themselves
         self.parameters = self._parameters(scene, geometry, lights)
 

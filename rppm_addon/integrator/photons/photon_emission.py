@@ -8,6 +8,7 @@ from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..device_scene.stage_context import StageContext
+from ..lights.emitters.programs import EmitterProgram
 
 Record("EmitParameters", world_transmittance="vec3", count="uint", target_count="uint", fills_world="uint")
 Record("FalloffParameters", count="uint")
@@ -17,7 +18,7 @@ class PhotonEmission:
     """Programs that place and direct photons, and end those that a soft light does not send to where they hit."""
 
     def __init__(self, library: ProgramLibrary) -> None:
-        self._emit = library.compute("photons/photon_emission/emit.comp")
+        self._emit = EmitterProgram(library, "photons/photon_emission/emit.comp")
         self._falloff = library.compute("photons/photon_emission/falloff.comp")
         self._library = library
 
@@ -27,7 +28,7 @@ class PhotonEmission:
 
         photons: storage blocks of the photons (Photons.blocks), as for the other programs.
         """
-        self._emit.run(
+        self._emit.of(context.lights.emitters.instances).run(
             count,
             {**context.blocks, **photons},
             {

@@ -6,9 +6,12 @@ import moderngl
 from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ..common.active_paths import ActivePaths
 from ..common.stage_sizes import StageSizes, photon_paths
 from ..device_scene.stage_context import StageContext
+from ..lights.emitters.programs import EmitterProgram
 
 StorageBlock("PhotonLinks", "uint photon_links[];")
 """LightLinks numbers of the photons that left the lights."""
@@ -22,8 +25,11 @@ class PhotonLinks(BufferSet):
 
     remedy = "lower the photons per iteration"
     _links = StorageBuffer("light links of photons", "uint", photon_paths, block="PhotonLinks")
-    _find = ComputeShader("photons/photon_links/find.comp")
     _link = ComputeShader("photons/photon_links/link.comp")
+
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._find = EmitterProgram(library, "photons/photon_links/find.comp") if self.is_on else None
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -32,9 +38,9 @@ class PhotonLinks(BufferSet):
 
     def find(self, context: StageContext, rays: moderngl.Buffer, photons: int) -> None:
         """Take the links of so many photons, whose rays (RAY) have just left the lights."""
-        if not self.is_on:
+        if self._find is None:
             return
-        self._find.run(
+        self._find.of(context.lights.emitters.instances).run(
             photons,
             {**context.blocks, **self.blocks, "Rays": rays},
             {"count": photons},

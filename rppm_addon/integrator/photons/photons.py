@@ -122,6 +122,8 @@ class Photons(Stage):
         with context.timers.stage("emission"):
             self._active.fill(self.photon_count)
             self._emission.emit(context, self.blocks, self.photon_count)
+            if context.lights.emitters.instances.are_there:
+                context.acceleration.gather_sources(rays, self._active, HitPaths.PHOTON)
             self._groups.find(context, rays, self.photon_origins.buffer, self.photon_count)
             self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(

@@ -4,7 +4,6 @@
 import logging
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -16,19 +15,20 @@ from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
+from ...materials.traits.emitted import Emits, emits
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
-from ...scene.storage.sharing import same_members
-from ..acceleration.instances import HitPaths, HitPlaces, InstancedMeshes, TriangleSources
+from ..acceleration.instances import HitNumbers, HitPaths, HitPlaces, InstancedMeshes, TriangleSources
 from ..common.active_paths import ActivePaths
 from ..common.instance_columns import InstanceColumns, numbered
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
+from ..common.require import require
 from ..common.stage_sizes import StageSizes
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
 from .hit_triangles import HitTriangles
 from .object_triangles import ObjectTriangles
-from .placements import PlacedArrays, Placements
+from .placements import PlacedArrays, PlacedMeshes, Placement, Placements
 from .volume_insets import inset_matrix, volumes_alone
 
 log = logging.getLogger(__name__)
@@ -80,36 +80,6 @@ def _by_column(reduce: Callable[..., np.ndarray], positions: np.ndarray) -> np.n
     return reduce(np.concatenate(parts), axis=0)
 
 
-@dataclass(frozen=True)
-class _PlacedOf:
-    """Instances that have triangles, and their meshes."""
-
-    instances: list[Instance]
-    chosen: np.ndarray
-    """(n,) their numbers among the instances of the scene, ascending."""
-    meshes: list[Mesh]
-    """All that the scene's instances have."""
-    bounds: list[tuple[np.ndarray, np.ndarray] | None]
-    """Bounds of the meshes, the same objects as long as their positions are."""
-    which: np.ndarray
-    """(n,) the mesh of each instance, by its place in ``meshes``."""
-    has_pivots: bool
-    """The scene is far from the world's origin."""
-    has_insets: bool
-    """Some are drawn together (volume_insets.py), which their matrices do not say."""
-
-    def keeps_rows(self, before: "_PlacedOf | None") -> bool:
-        """True where rows of instances that have not changed stay as they were made of those before."""
-        return (
-            before is not None
-            and not (self.has_insets or before.has_insets)
-            and self.has_pivots == before.has_pivots
-            and same_members(self.bounds, before.bounds)
-            and np.array_equal(self.chosen, before.chosen)
-            and np.array_equal(self.which, before.which)
-        )
-
-
 class Geometry(BufferSet):
     """World-space triangles of a scene in GPU buffers.
 
@@ -144,7 +114,7 @@ class Geometry(BufferSet):
         self.placements = Placements([], np.zeros(0, np.int64))
         self.placed = PlacedArrays()
         """Arrays of the placements."""
-        self._placed_of: _PlacedOf | None = None
+        self._placed_of: PlacedMeshes | None = None
         """Meshes and instances that the arrays of the placements are of; None where these are not known."""
         self.bounds_low = self.bounds_high = np.zeros(3)
 
@@ -162,6 +132,14 @@ class Geometry(BufferSet):
     def center(self) -> np.ndarray:
         """Center of the bounding sphere, (3,) meters."""
         return 0.5 * (self.bounds_low + self.bounds_high)
+
+    @property
+    def expanded(self) -> Sequence[Placement]:
+        """Placements of the instances that are expanded to world triangles."""
+        if self.instanced is None:
+            return self.placements
+        numbers = np.delete(np.arange(len(self.placements)), self.instanced.placements)
+        return [self.placements[number] for number in numbers.tolist()]
 
     @property
     def radius(self) -> float:
@@ -220,7 +198,7 @@ class Geometry(BufferSet):
         self._objects.gather(self._inputs.blocks, self.triangles, is_new)
         self._world = world
 
-    def _place(self, scene: Scene) -> _PlacedOf:
+    def _place(self, scene: Scene) -> PlacedMeshes:
         """Take the instances of a scene that have triangles, and place them; returns what these are."""
         before, self._placed_of = self._placed_of, None  # should anything fail
         columns = self.columns
@@ -243,13 +221,13 @@ class Geometry(BufferSet):
         for number in are_inset.tolist():
             matrices[number] = inset_matrix(matrices[number], boxes[number], number)
         has_pivots = scene.world_origin is not None
-        of = _PlacedOf(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
+        of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
         self.placed.take(matrices, boxes, has_pivots, _among(chosen, read) if of.keeps_rows(before) else None)
         self._placed_of = of
         return of
 
     def _entries(
-        self, of: _PlacedOf, scene: Scene, slots: list[Sequence[int]] | None, default_material: int
+        self, of: PlacedMeshes, scene: Scene, slots: list[Sequence[int]] | None, default_material: int
     ) -> tuple[np.ndarray, np.ndarray]:
         """INSTANCE_ENTRY records of the placements, whose first triangles are left out, and the materials of all slots,
         uint32. ``slots``: as build takes them."""
@@ -304,7 +282,8 @@ class Geometry(BufferSet):
         placement's first slot."""
         self.instanced = None
         first = next_range(self.triangle_count)
-        self._hits.place(first, StageSizes.of(scene) if len(placements) else None)
+        has_emitters = bool(self._may_emit(scene)[placements].any())
+        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, has_emitters)
         mesh_of = which[placements]
         used = np.flatnonzero(np.bincount(mesh_of))
         one = np.zeros(len(meshes), np.int64)
@@ -329,13 +308,35 @@ class Geometry(BufferSet):
             world,
             HitPlaces(self._hits.first, self._hits.count, self._hits.origins.buffer, self._hits.first_hits),
             self._gather_hits,
+            has_emitters,
         )
 
     def _gather_hits(
-        self, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths, blocks: Mapping[str, Bindable]
+        self,
+        numbers: moderngl.Buffer,
+        kind: HitNumbers,
+        active: ActivePaths,
+        paths: HitPaths,
+        blocks: Mapping[str, Bindable],
     ) -> None:
         outputs = self.triangles, self.attributes
-        self._hits.gather(hits, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
+        self._hits.gather(numbers, kind, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
+
+    def _may_emit(self, scene: Scene) -> np.ndarray:
+        """(placements,) bool, those with a material that may emit light."""
+        glowing = {m for m, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
+        return self.columns.have(glowing)[require(self._placed_of).chosen]
+
+    def listed_parts(self, count: int) -> list[slice]:
+        """Parts of so many triangles that gather_listed takes at a time."""
+        most = self._hits.listed_count
+        return [slice(start, min(start + most, count)) for start in range(0, count, most)]
+
+    def gather_listed(self, placement: int, triangles: np.ndarray) -> np.ndarray:
+        """Make world triangles of triangles (n,) of the mesh of a placement that is not expanded, while no paths are
+        traced; returns their numbers, (n,)."""
+        outputs = self.triangles, self.attributes
+        return self._hits.gather_listed(placement, triangles, self._inputs.blocks, outputs, self.center)
 
     def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> bool:
         """Have room for the triangles of instances, which have so many each (n,); returns whether the buffers are new.

@@ -12,7 +12,7 @@ from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
-from ..acceleration.instances import HitPaths
+from ..acceleration.instances import HitNumbers, HitPaths
 from ..common.active_paths import ActivePaths
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes, band_pixels, photon_paths, subsurface_walks
@@ -23,6 +23,7 @@ _PATHS = {
     HitPaths.PHOTON: photon_paths,
     HitPaths.SHADOW: band_pixels,
     HitPaths.SUBSURFACE: subsurface_walks,
+    HitPaths.LIGHT: band_pixels,
 }
 """Number of paths of each list, by the sizes of a scene."""
 
@@ -39,7 +40,8 @@ def expected_hit_bytes(sizes: StageSizes) -> dict[str, int]:
 
 
 class HitTriangles(BufferSet):
-    """Places in the blocks Triangles and Attributes for the triangles that paths hit, two for each path.
+    """Places in the blocks Triangles and Attributes for the triangles that paths hit, two for each path, and one for
+    each emissive triangle that a shadow ray goes to.
 
     Stages read a hit triangle as they read any other: ``gather`` fills it in once rays have been traced.
     """
@@ -49,39 +51,76 @@ class HitTriangles(BufferSet):
 
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
-        self._gather = library.compute("surfaces/geometry/gather_hits.comp")
+        self._library = library
+        self._gather_listed = library.compute("surfaces/geometry/gather_listed.comp")
+        self._has_emitters = False
         self.first = self.count = 0
         """First hit triangle, and their number."""
         self.first_hits: dict[HitPaths, int] = {}
         """The first hit triangle of each list of paths, counted from ``first``."""
         self._counts: dict[HitPaths, int] = {}
 
-    def place(self, first: int, sizes: StageSizes | None) -> None:
-        """Have places for the paths of a scene of these sizes from a triangle on; for none without sizes."""
-        self.first, self.count, self.first_hits = first, 0, {}
+    def place(self, first: int, sizes: StageSizes | None, has_emitters: bool) -> None:
+        """Have places for the paths of a scene of these sizes from a triangle on; for none without sizes.
+        has_emitters: whether any instances emit light."""
+        self.first, self.count, self.first_hits, self._has_emitters = first, 0, {}, has_emitters
         if sizes is None:
             return
         for paths, size in _PATHS.items():
+            of_path = 2 if paths is not HitPaths.LIGHT else int(has_emitters)
             self.first_hits[paths] = self.count
-            self._counts[paths] = next_range(2 * size(sizes))
+            self._counts[paths] = next_range(of_path * size(sizes))
             self.count += self._counts[paths]
         self.origins.require_items(self.count)
 
+    @property
+    def listed_count(self) -> int:
+        """Number of triangles that gather_listed takes at a time."""
+        return self._counts[HitPaths.PHOTON]
+
+    def gather_listed(
+        self,
+        placement: int,
+        triangles: np.ndarray,
+        blocks: Mapping[str, Bindable],
+        outputs: tuple[GrowingBuffer, GrowingBuffer],
+        fallback_point: np.ndarray,
+    ) -> np.ndarray:
+        """Write triangles (n,) of the mesh of a placement while no paths are traced; returns their numbers, (n,).
+
+        ``blocks``, ``outputs``, ``fallback_point``: as of gather.
+        """
+        place, count = self.first_hits[HitPaths.PHOTON], len(triangles)
+        origins = np.stack([np.full(count, placement), triangles], axis=1).astype(np.uint32)
+        self.origins.write(origins, self.origins.item_size * place)
+        ((written,), (attributes,)) = (buffer.ranges(count, self.first + place) for buffer in outputs)
+        self._gather_listed.run(
+            count,
+            {**blocks, **self.blocks, "Triangles": written, "Attributes": attributes},
+            {"fallback_point": fallback_point, "first_hit": place, "hit_count": count},
+        )
+        return self.first + place + np.arange(count)
+
     def gather(
         self,
-        hits: moderngl.Buffer,
+        numbers: moderngl.Buffer,
+        kind: HitNumbers,
         active: ActivePaths,
         paths: HitPaths,
         blocks: Mapping[str, Bindable],
         outputs: tuple[GrowingBuffer, GrowingBuffer],
         fallback_point: np.ndarray,
     ) -> None:
-        """Write the triangles of the hits (HIT) of active paths of a list.
+        """Write the triangles that a buffer, of some kind, names for the active paths of a list.
 
         ``blocks``: the inputs of gathering, and those of the acceleration structure; ``outputs``: world triangles and
         their attributes; ``fallback_point``: of triangles that are not finite, (3,) meters.
         """
         first, count = self.first_hits[paths], self._counts[paths]
         ((triangles,), (attributes,)) = (buffer.ranges(count, self.first + first) for buffer in outputs)
-        buffers = {**blocks, **self.blocks, "Hits": hits, "Triangles": triangles, "Attributes": attributes}
-        active.run(self._gather, buffers, {"fallback_point": fallback_point, "first_hit": first, "hit_count": count})
+        buffers = {**blocks, **self.blocks, kind.block: numbers, "Triangles": triangles, "Attributes": attributes}
+        defines: dict[str, object] = {"HIT_NUMBERS": kind.shader} if kind is not HitNumbers.HITS else {}
+        if self._has_emitters:
+            defines["INSTANCED_EMITTERS"] = 1
+        program = self._library.compute("surfaces/geometry/gather_hits.comp", defines)
+        active.run(program, buffers, {"fallback_point": fallback_point, "first_hit": first, "hit_count": count})

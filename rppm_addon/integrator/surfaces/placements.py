@@ -7,11 +7,14 @@ from typing import overload
 
 import numpy as np
 
-from ...scene.meshes import Instance
+from ...scene.meshes import Instance, Mesh
+from ...scene.storage.sharing import same_members
 from ..common.affine import affine_inverses, determinants
 
 _AT_ONCE = 1 << 15
 """Rows that are computed at a time: what lies between fits into a processor's cache."""
+FARTHEST = 1e15
+"""Meters from the origin beyond which no triangle is rendered (shaders/surfaces/geometry/mesh_arrays.glsl)."""
 _FAR_VERTICES = 128.0
 """Meters from the origin of their object beyond which vertices are counted from a place among them (_pivots)."""
 
@@ -48,6 +51,36 @@ class Placements(Sequence[Placement]):
         if isinstance(index, slice):
             return Placements(self.instances[index], self._first_triangles[index])
         return Placement(self.instances[index], int(self._first_triangles[index]))
+
+
+@dataclass(frozen=True)
+class PlacedMeshes:
+    """Instances that have triangles, and their meshes."""
+
+    instances: list[Instance]
+    chosen: np.ndarray
+    """(n,) their numbers among the instances of the scene, ascending."""
+    meshes: list[Mesh]
+    """All that the scene's instances have."""
+    bounds: list[tuple[np.ndarray, np.ndarray] | None]
+    """Bounds of the meshes, the same objects as long as their positions are."""
+    which: np.ndarray
+    """(n,) the mesh of each instance, by its place in ``meshes``."""
+    has_pivots: bool
+    """The scene is far from the world's origin."""
+    has_insets: bool
+    """Some are drawn together (volume_insets.py), which their matrices do not say."""
+
+    def keeps_rows(self, before: "PlacedMeshes | None") -> bool:
+        """True where rows of instances that have not changed stay as they were made of those before."""
+        return (
+            before is not None
+            and not (self.has_insets or before.has_insets)
+            and self.has_pivots == before.has_pivots
+            and same_members(self.bounds, before.bounds)
+            and np.array_equal(self.chosen, before.chosen)
+            and np.array_equal(self.which, before.which)
+        )
 
 
 class PlacedArrays:
@@ -118,7 +151,7 @@ def placed_boxes(matrices: np.ndarray, boxes: np.ndarray) -> tuple[np.ndarray, n
             middle = middle + column * centers[:, axis, None]
             reach += np.abs(column) * halves[:, axis, None]
         low, high = middle - reach, middle + reach
-    return low, high, (np.maximum(-low, high) < 1e15).all(axis=1)  # false for NaN as well
+    return low, high, (np.maximum(-low, high) < FARTHEST).all(axis=1)  # false for NaN as well
 
 
 def _pivots(matrices: np.ndarray, boxes: np.ndarray) -> np.ndarray:

@@ -57,6 +57,37 @@ def asks_for_path(graph: NodeGraph) -> bool:
     return any(graph.nodes[index].kind == "light_path" for index in reachable(graph, graph.surface))
 
 
+_OF_MESH = {
+    "uvmap", "random_per_island", "strand_value", "round_size", "tangent", "generated_coord", "fresnel", "layer_weight",
+    "light_path", "hair_info",
+}  # fmt: skip
+_OUTPUTS_OF_MESH = {
+    ("tex_coord", "uv"), ("tex_coord", "object"), ("tex_coord", "normal"), ("new_geometry", "parametric"),
+    ("new_geometry", "backfacing"), ("new_geometry", "incoming"),
+}  # fmt: skip
+"""Nodes, and outputs of others, that tell no instance of a mesh from another but by where it is seen from."""
+
+
+def emits_alike(graph: NodeGraph) -> bool:
+    """Whether all instances of a mesh emit the same light from each of its places, as far as the nodes show: none ask
+    for the object, the instance or the place in the world."""
+    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
+    asked = {
+        (graph.nodes[value.node].kind, value.output)
+        for node in nodes
+        for value in node.inputs.values()
+        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
+    }
+    return all(
+        kind in _OF_MESH or (kind, output) in _OUTPUTS_OF_MESH or _shades(kind) for kind, output in asked
+    ) and not any(node.kind == "tex_image" and node.options.get("projection") == "BOX" for node in nodes)
+
+
+def _shades(kind: str) -> bool:
+    """Return True for shaders, and for textures, which depend on what their inputs do."""
+    return kind == "tex_image" or kind.startswith("bsdf_") or kind in _EMITTING
+
+
 @dataclass(frozen=True)
 class LightVariation:
     """Variables on which the emission of a light depends."""

@@ -157,8 +157,8 @@ class AccelerationSettings(SettingGroup):
             Instancing.TWO_LEVELS: (
                 "Two Levels",
                 "Instances share the triangles of their mesh: memory does not grow with their number, and moving them "
-                "rebuilds little. What emits light or has a volume is expanded all the same. The camera "
-                "traces its first hits",
+                "rebuilds little. What has a volume, or emits light that differs from instance to instance, is "
+                "expanded all the same. The camera traces its first hits",
             ),
         },
     )

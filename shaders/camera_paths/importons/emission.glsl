@@ -34,8 +34,9 @@ vec3 light_object_emission(PathSegment segment) {
 float emission_mis_weight(ScatterPoint from, uint triangle) {
     if (!(from.pdf > 0.0)) return 1.0;
     float pdf = emissive_triangle_pdf(from.lit.position, triangle);
-    uint leaf = uint(triangle_vertices[3u * triangle + 1u].w);
-    if (pdf > 0.0 && leaf > 0u) pdf *= light_probability(from.lit, from.environment_irradiance, KIND_TRIANGLES, leaf);
+    EmitterNumber leaf = emitter_leaf(triangle);
+    if (pdf > 0.0 && emitter_number(leaf) > 0u)
+        pdf *= light_probability(from.lit, from.environment_irradiance, KIND_TRIANGLES, leaf);
     else pdf = 0.0;
     return scatter_mis_weight(from.pdf, pdf);
 }

@@ -4,6 +4,7 @@
 // lint: PORTALS=1
 // lint: MEDIA=1 EMISSIVE_MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1 EMISSIVE_MEDIA=1
+// lint: EMITTERS=lights/two_levels
 // DirectPhotonHits, first half: photons leave the lights (paper section 4.3).
 
 layout(local_size_x = 64) in;
@@ -22,6 +23,7 @@ writeonly buffer PhotonCells;
 writeonly buffer PhotonOrigins;
 writeonly buffer PhotonDifferentials;
 
+#include EMITTERS "lights/one_level/hits.glsl"
 #include <GuideCells>
 #include <LightGroups>
 
@@ -47,7 +49,7 @@ PhotonDifferential leaving_differential(Light light, Emission emission, float be
 }
 
 bool is_hidden_from_media(Light light, Emission emission) {
-    if (emission.triangle != NO_TRIANGLE) return (emitter_traits(emission.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u;
+    if (emission.triangle != NO_EMITTER) return emitter_is_hidden_from_media(emission.triangle);
     return (light.flags & RAY_VOLUME_SCATTER) == 0u;
 }
 
@@ -122,5 +124,6 @@ void main() {
     float before = distance(left_from, emission.origin);
     photon_differentials[index] = leaving_differential(light, emission, before);
     if (emission.reach < INFINITY_DISTANCE) emission.reach = max(emission.reach - before, 0.0);
-    rays[index] = Ray(emission.origin, emission.triangle, emission.direction, traced ? emission.reach : 0.0);
+    uint source = keep_left_emitter(emission.triangle, index);
+    rays[index] = Ray(emission.origin, source, emission.direction, traced ? emission.reach : 0.0);
 }

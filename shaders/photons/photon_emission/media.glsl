@@ -96,5 +96,5 @@ Emission emit_from_medium(Light light, EmissionChoice choice) {
     float aimed = has_targets ? target_direction_pdf(point.position, cones, direction) : 0.0;
     float pdf = mixed_pdf(light, 1.0 / (4.0 * PI), vec2(choice.part, 0.0), sphere_to_square(direction), aimed,
                           has_targets, choice);
-    return Emission(point.position, NO_TRIANGLE, direction, point.flux / (4.0 * PI * pdf), pdf, INFINITY_DISTANCE);
+    return Emission(point.position, NO_EMITTER, direction, point.flux / (4.0 * PI * pdf), pdf, INFINITY_DISTANCE);
 }

@@ -11,7 +11,7 @@
 // pdf: of the direction from a place in 1/sr, or of the place across parallel rays in 1/m^2. reach: how far it goes.
 struct Emission {
     vec3 origin;
-    uint triangle;
+    EmitterNumber triangle;
     vec3 direction;
     vec3 flux;
     float pdf;
@@ -47,7 +47,7 @@ Emission emit_from_infinity(Light light, vec3 direction, vec3 flux_density, Emis
     float pdf = mixed_pdf(light, plain, disk_to_square(place / radius), choice.direction,
                           has_targets ? target_shadow_pdf(t, b, shadows, place) : 0.0, has_targets, choice);
     vec3 origin = iteration.scene_center + place.x * t + place.y * b - radius * direction;
-    return Emission(origin, NO_TRIANGLE, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
+    return Emission(origin, NO_EMITTER, direction, flux_density / pdf, pdf, INFINITY_DISTANCE);
 }
 
 // Fractions of the photons of a sphere with surfaces or a medium in it that light these: from its far side to its near.
@@ -82,13 +82,13 @@ Emission emit_from_point(Light light, EmissionChoice choice) {
         forward = -forward;
     }
     vec3 strength = within ? light.strength : radiant_strength(light, direction);
-    return Emission(origin + forward * direction, NO_TRIANGLE, direction, strength / (part * pdf), pdf, reach);
+    return Emission(origin + forward * direction, NO_EMITTER, direction, strength / (part * pdf), pdf, reach);
 }
 
 // From a point of a surface, with the pdf by area that the point was chosen by.
 Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choice) {
     vec3 origin = point.position, normal = point.normal, radiance = point.radiance;
-    uint triangle = point.triangle;
+    EmitterNumber triangle = point.triangle;
     float cones = target_cones(origin);
     bool has_targets = cones > 0.0, both_sides = light.kind == LIGHT_MESH, narrow = light.spread_tangent > 0.0;
     vec3 direction;
@@ -105,7 +105,7 @@ Emission emit_from_surface(Light light, TrianglePoint point, EmissionChoice choi
     if (both_sides) cosine = abs(cosine);
     Emission none = Emission(origin, triangle, direction, vec3(0.0), 0.0, 0.0);
     // Rays do not see strands and points from within: what shone there would get out.
-    bool within = both_sides && dot(direction, normal) < 0.0 && is_one_sided(triangle_vertices[3u * triangle].w);
+    bool within = both_sides && dot(direction, normal) < 0.0 && is_one_sided(emitter_set_code(triangle));
     if (cosine <= 0.0 || within) return none;
     float plain = both_sides ? cosine / (2.0 * PI) : cosine / PI;
     if (narrow) plain = cosine >= light.cosine_cone ? 1.0 / (2.0 * PI * (1.0 - light.cosine_cone)) : 0.0;
@@ -161,7 +161,7 @@ Emission emit_plain_photon(Light light, EmissionChoice choice) {
     else {
         vec2 place = light.kind == LIGHT_ELLIPSE ? sample_disk(choice.place) : 2.0 * choice.place - 1.0;
         point = TrianglePoint(light.position + place.x * light.axis_u + place.y * light.axis_v, light.normal,
-                              NO_TRIANGLE, light.strength, 1.0 / light.area, 0.0);
+                              NO_EMITTER, light.strength, 1.0 / light.area, 0.0);
     }
     return emit_from_surface(light, point, choice);
 }

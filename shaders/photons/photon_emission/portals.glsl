@@ -76,7 +76,7 @@ Emission emit_from_world(Light light, EmissionChoice choice) {
     vec3 direction = -toward, t, b;
     tangent_frame(direction, t, b);
     float across = portals_across(direction), radius = iteration.scene_radius, shadows = target_shadows();
-    Emission none = Emission(iteration.scene_center, NO_TRIANGLE, direction, vec3(0.0), 0.0, 0.0);
+    Emission none = Emission(iteration.scene_center, NO_EMITTER, direction, vec3(0.0), 0.0, 0.0);
     if (by_portals && !(across > 0.0)) return none;
     uint sampled = NO_PORTAL;
     vec2 place;
@@ -96,5 +96,5 @@ Emission emit_from_world(Light light, EmissionChoice choice) {
     pdf /= float(max(light.photon_count, 1u));
     if (!(pdf > 0.0)) return none;
     vec3 origin = iteration.scene_center + place.x * t + place.y * b - radius * direction;
-    return Emission(origin, NO_TRIANGLE, direction, world_radiance(toward) / pdf, pdf, INFINITY_DISTANCE);
+    return Emission(origin, NO_EMITTER, direction, world_radiance(toward) / pdf, pdf, INFINITY_DISTANCE);
 }

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: EMITTERS=lights/two_levels
 // What the lights that photons leave shine on, by number.
 
 layout(local_size_x = 64) in;
@@ -12,7 +14,7 @@ uniform Parameters { PhotonLinkParameters parameters; };
 readonly buffer Rays;
 writeonly buffer PhotonLinks;
 readonly buffer Triangles;
-#include "lights/emitter_traits.glsl"
+#include EMITTERS "lights/one_level/traits.glsl"
 
 void main() {
     uint index = invocation_index();

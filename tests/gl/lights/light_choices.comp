@@ -12,19 +12,35 @@ uniform Parameters { LightChoicesParameters parameters; };
 #include "lights/light_tree.glsl"
 writeonly buffer Results { vec4 results[]; };
 
+#ifdef EMITTERS
+// Of a chosen emissive triangle, its leaf, and a number that no other one has.
+EmitterNumber chosen_leaf(EmitterNumber emitter) {
+    uint triangle = emissive_triangles[emitter.y].triangle;
+    if (is_of_instance(emitter)) return uvec2(emitter.x, triangle);
+    return in_world(uint(triangle_vertices[3u * triangle + 1u].w));
+}
+uint number_of(EmitterNumber emitter) { return emitter.y + (is_of_instance(emitter) ? (emitter.x + 1u) << 20u : 0u); }
+#else
+EmitterNumber chosen_leaf(EmitterNumber emitter) {
+    return uint(triangle_vertices[3u * emissive_triangles[emitter].triangle + 1u].w);
+}
+uint number_of(EmitterNumber emitter) { return emitter; }
+#endif
+
 // What rays that meet the light of a choice tell of its probability; of the environment none do.
 float told_probability(LightChoice choice, LitPoint point) {
-    uint kind = lights[choice.light].kind, leaf = 0u;
+    uint kind = lights[choice.light].kind;
+    EmitterNumber leaf = in_world(0u);
     if (kind == LIGHT_WORLD) return choice.probability;
     if (kind == LIGHT_MESH) {
-        leaf = uint(triangle_vertices[3u * emissive_triangles[choice.triangle].triangle + 1u].w);
+        leaf = chosen_leaf(choice.triangle);
         return light_probability(point, iteration.environment_irradiance, KIND_TRIANGLES, leaf);
     }
     for (uint sun = 0u; sun < iteration.sun_count; ++sun)
         if (light_nodes[iteration.first_sun + sun].member == choice.light)
-            return light_probability(point, iteration.environment_irradiance, KIND_FIRST_SUN + sun, 0u);
+            return light_probability(point, iteration.environment_irradiance, KIND_FIRST_SUN + sun, leaf);
     for (uint node = iteration.light_tree_leaves; node < 2u * iteration.light_tree_leaves; ++node)
-        if (light_nodes[node].member == choice.light) leaf = node;
+        if (light_nodes[node].member == choice.light) leaf = in_world(node);
     return light_probability(point, iteration.environment_irradiance, KIND_OBJECTS, leaf);
 }
 
@@ -50,6 +66,6 @@ void main() {
     float u = (float(index) + 0.5) / float(parameters.count);
     LitPoint point = LitPoint(parameters.point, parameters.normal, parameters.both_sides != 0u, 0u);
     LightChoice choice = choose_light_at(point, iteration.environment_irradiance, u, next_random(random));
-    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(choice.triangle), choice.probability,
-                          told_probability(choice, point));
+    results[index] = vec4(uintBitsToFloat(choice.light), uintBitsToFloat(number_of(choice.triangle)),
+                          choice.probability, told_probability(choice, point));
 }

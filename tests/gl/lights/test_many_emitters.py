@@ -7,7 +7,7 @@ import pytest
 import scenes
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.lights import emitters
+from rppm_addon.integrator.lights.emitters import candidates
 from rppm_addon.integrator.lights.light_tree import LightTree
 from rppm_addon.scene.errors import DeviceError
 from rppm_addon.self_test.meshes import placed
@@ -44,6 +44,6 @@ def test_too_many_emitters_are_refused_before_they_are_asked(mapper, monkeypatch
     with pytest.raises(DeviceError, match=said):
         mapper.build(scene)
     monkeypatch.setattr(type(nodes), "limit", nodes.size + 64)
-    monkeypatch.setattr(emitters, "_STEPS", 3 * ball - 1)
+    monkeypatch.setattr(candidates, "STEPS", 3 * ball - 1)
     with pytest.raises(DeviceError, match=f"no more than {3 * ball - 1:,} triangles can emit light; let .* {most}"):
         mapper.build(scene)

@@ -3,10 +3,12 @@
 
 import math
 
-from rppm_addon.scene import DirectLight
+import numpy as np
+
+from rppm_addon.scene import DirectLight, Instancing
 
 from ...net import Net, diffuse, material, socket
-from ...scenes import light, place
+from ...scenes import light, link_object, place
 from .. import stage
 from ..rows import Row, add
 from ..values.image_textures import texture
@@ -195,6 +197,24 @@ def _small_bulbs() -> None:
 
 
 lights("Glowing mesh", "two bulbs", _small_bulbs, effort=2)
+
+
+def _copies() -> None:
+    """Sixty of one ball, scaled unevenly, and every other one mirrored."""
+    surface, net = material("Bulb")
+    strength = net.out("Math", 0, {0: net.out("TexChecker", "Fac", {"Scale": 4.0, "Vector": net.out("TexCoord", "UV")}),
+                                   1: 40.0, 2: 20.0}, operation="MULTIPLY_ADD")  # fmt: skip
+    net.output(net.emission((1.0, 0.8, 0.6), strength))
+    first = stage.ball(surface, {"at": (0.0, -0.5, 3.0), "scale": (0.05, 0.05, 0.05)}, 12)
+    generator = np.random.default_rng(4)
+    for number in range(59):
+        x, y, z = generator.uniform((-1.8, -2.2, 2.7), (1.8, 0.4, 3.3))
+        sides = generator.uniform(0.02, 0.12, 3) * ((-1.0) ** number, 1.0, 1.0)
+        where = {"at": (x, y, z), "turn": tuple(generator.uniform(0.0, 360.0, 3)), "scale": tuple(sides)}
+        link_object(first.data, place(**where), f"Bulb {number}")
+
+
+lights("Glowing mesh", "sixty copies of one", _copies, effort=10, settings={"instancing": Instancing.TWO_LEVELS})
 
 
 def _in_view(visible: bool):

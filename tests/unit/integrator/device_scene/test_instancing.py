@@ -23,6 +23,9 @@ from rppm_addon.scene import (
     Scene,
     Shutter,
 )  # fmt: skip
+from rppm_addon.scene.light_linking import LightLinking
+from rppm_addon.scene.materials import Material
+from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
 from rppm_addon.scene.passes import DEEP_CUBEMAP, VECTOR
 from rppm_addon.self_test.meshes import placed, rectangle, sphere
 
@@ -62,10 +65,44 @@ def test_meshes_that_occur_more_than_once():
     assert members_of(scene_of(*BALLS, (1, PLAIN), **TWO_LEVELS)) == [0, 1, 2]
 
 
-@pytest.mark.parametrize("kind", [GLOWING, FILLED])
-def test_what_emits_or_is_filled_is_expanded(kind):
-    assert members_of(scene_of((0, PLAIN), (0, kind), (0, PLAIN), **TWO_LEVELS)) == [0, 2]
-    assert members_of(scene_of((0, PLAIN), (0, kind), **TWO_LEVELS)) == []
+def test_what_is_filled_is_expanded():
+    assert members_of(scene_of((0, PLAIN), (0, FILLED), (0, PLAIN), **TWO_LEVELS)) == [0, 2]
+    assert members_of(scene_of((0, PLAIN), (0, FILLED), **TWO_LEVELS)) == []
+
+
+GLOWING_BALLS = [(0, GLOWING)] * 3
+
+
+def test_what_glows_alike_shares_its_triangles():
+    assert members_of(scene_of(*GLOWING_BALLS, (1, GLOWING), **TWO_LEVELS)) == [0, 1, 2]
+    assert members_of(scene_of((0, PLAIN), (0, GLOWING), (1, PLAIN), **TWO_LEVELS)) == [0, 1]
+
+
+def glowing_by(kind: str, output: str) -> Scene:
+    """Balls whose emission has the strength that a node gives."""
+    scene = scene_of(*GLOWING_BALLS, **TWO_LEVELS)
+    nodes = [ShaderNode(kind), ShaderNode("emission", inputs={"strength": Link(0, output)})]
+    scene.materials[GLOWING] = Material("glowing", NodeGraph(nodes, surface=Link(1, "emission")))
+    return scene
+
+
+def test_what_glows_by_object_or_place_is_expanded():
+    asked = ("object_info", "random"), ("particle_info", "age"), ("attribute", "fac"), ("new_geometry", "position")
+    for kind, output in asked:
+        assert members_of(glowing_by(kind, output)) == [], kind
+    for kind, output in (("tex_coord", "uv"), ("strand_value", "value"), ("new_geometry", "backfacing")):
+        assert members_of(glowing_by(kind, output)) == [0, 1, 2], kind
+
+
+def test_what_glows_and_is_linked_is_expanded():
+    scene = with_instance(scene_of(*GLOWING_BALLS, **TWO_LEVELS), 1, linking=LightLinking(light_set_membership=2))
+    assert members_of(scene) == [0, 2]
+
+
+def test_what_glows_beside_media_and_catchers_is_expanded():
+    assert members_of(scene_of(*GLOWING_BALLS, (0, PLAIN), (0, PLAIN), (1, FILLED), **TWO_LEVELS)) == [3, 4]
+    caught = with_instance(scene_of(*GLOWING_BALLS, (1, PLAIN), **TWO_LEVELS), 3, shadow_catcher=True)
+    assert members_of(caught) == []
 
 
 def test_what_bends_is_expanded():
