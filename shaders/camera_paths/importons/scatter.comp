@@ -7,6 +7,8 @@
 // lint: ASHIKHMIN_LOBES=1
 // lint: PORTALS=1
 // lint: TRANSPARENT_GLASS=1
+// lint: RAY_PORTALS=1
+// lint: MEDIA=1 RAY_PORTALS=1
 // lint: COUNTS_BOUNCES=1 CLAMPS_LIGHT=1
 // lint: COUNTS_BOUNCES=1 CLAMPS_LIGHT=1 FILTERS_GLOSSY=1
 // TraceImportons: at the end of the ray of a camera path, add the emission along the ray, leave an importon for the
