@@ -141,7 +141,7 @@ def test_mixed_with_others(mapper, beside, radiance):
 
 
 def test_a_transparent_film_shows_its_background(mapper):
-    """Of what a window to nowhere lets pass; the window itself covers the rest."""
+    """The background counts by what a window to nowhere lets pass; the window itself covers the rest."""
     picture = radiance_of(mapper, window(portal(way=(0.0, 0.0, -9.0), color=tuple(TINT)), film_transparent=True))
     np.testing.assert_allclose(picture, np.broadcast_to([0.0, 0.0, 0.0, 1.0 - TINT.mean()], picture.shape), atol=1e-5)
 
