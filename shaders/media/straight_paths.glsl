@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common/camera_path.glsl"
-#include <RayPortalPaths>
 
 // Whether a camera path has come straight from the camera, so that its ray is that of its pixel.
 bool is_straight(CameraPath path) {

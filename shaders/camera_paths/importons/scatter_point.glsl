@@ -10,7 +10,6 @@
 
 // A path's lit_from is a light set, with flags above it, and in scenes with ray portals the number of those passed.
 const uint LIT_FROM_BEHIND = 64u, LIT_GATHER_ORIGIN = 128u;
-#include <RayPortalPaths>
 
 // Whether a path of a final gather has come through a ray portal since its ray left: shadow rays and photons bring
 // nothing of what it finds.

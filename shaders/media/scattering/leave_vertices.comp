@@ -16,7 +16,6 @@ layout(local_size_x = 64) in;
 #include "common/path_history.glsl"
 #include <ClearGlass>
 #include <FinalGather>
-#include <RayPortalPaths>
 #include <Importon>
 #include <Ray>
 readonly buffer MediumVertices;

@@ -124,12 +124,20 @@ def _sky() -> None:
     background().inputs["Strength"].default_value = 0.5
 
 
+def _fog() -> None:
+    """A lamp of no size in a world of fog: what is lit is the fog alone, and what it lights."""
+    light("POINT", 900.0, place(at=(20.0, 0.0, 3.0)), shadow_soft_size=0.0)
+    net = Net(bpy.context.scene.world.node_tree)
+    net.set(net.find("OUTPUT_WORLD").inputs["Volume"], net.out("VolumeScatter", inputs={"Density": 0.1}))
+
+
 for _name, _light, _effort in (
     ("an area light through it", _lamp, 8),
     ("a lamp through it", _point, 8),
     ("a lit wall through it", _wall, 6),
     ("what glows through it", _glow, 6),
     ("the world through it", _sky, 2),
+    ("fog through it", _fog, 20),
 ):
     add(Row(GROUP, _name, _skylight(_light), effort=_effort, settings={"photons": 512}))
 
