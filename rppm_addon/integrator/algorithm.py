@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Algorithm 1 of the paper, Rasterization-based Progressive Photon Mapping. Its Init is in device_scene.py."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from .camera_paths.gbuffer import jittered_view
+from .common.band import Band
 from .common.iteration import Iteration
 from .density_estimation.radii import Radii
 from .device_scene.stage_context import StageContext
@@ -12,19 +13,28 @@ from .learning import BandFindings, Learning
 from .stage_set import StageSet
 
 
-def iterate(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Iterator[None]:
-    """One iteration in steps, for whoever has something to do between them. The paper's names stand beside."""
+def iterate(
+    context: StageContext,
+    stages: StageSet,
+    learning: Learning,
+    iteration: Iteration,
+    bands: Sequence[tuple[Band, Iteration]],
+) -> Iterator[None]:
+    """One iteration in steps, for whoever has something to do between them. The paper's names stand beside.
+
+    bands: those that take part in the iteration, with the iteration as it is for each."""
     importons, estimator, listeners = stages.importons, stages.density_estimator, stages.listeners
     yield from trace_photons(context, stages, iteration)
     radii = store_photons(context, stages, learning, iteration)
     findings: list[BandFindings] = []
     stages.photon_noise.begin()
     yield
-    for band in stages.bands:
+    for band, exposure in bands:
+        context.iteration_block.write_number_in_film(exposure.number_in_film)
         stages.clear(context)
         context = context.with_blocks(stages.blocks_of(band))
-        view = jittered_view(context.scene.camera, context.settings, band, iteration)
-        events = stages.events_of(context, iteration, band, radii)
+        view = jittered_view(context.scene.camera, context.settings, band, exposure)
+        events = stages.events_of(context, exposure, band, radii)
         stages.camera_hits.find(context, importons, view, band)  # DirectCameraHits
         stages.media.enter_camera_paths(context, importons)
         listeners.band_begun(events)
@@ -32,14 +42,14 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
         for segment in range(context.settings.camera_segments):  # TraceImportons
             if segment > 0 and not importons.trace(context, segment):
                 break
-            importons.resolve(context, iteration, segment)
+            importons.resolve(context, exposure, segment)
             stages.subsurface.walk_camera_paths(context, importons, band, segment)
             yield
             if stages.media.is_on:
                 _add_scattering_in_media(context, stages, events, segment)
                 yield
             stages.shadow_catcher.cast(context, importons, band, segment)
-            stages.direct_light.add(context, importons, band, iteration, segment)
+            stages.direct_light.add(context, importons, band, exposure, segment)
             yield
             listeners.direct_light_added(events, segment)
             importons.scatter(context, band, segment)
@@ -50,11 +60,11 @@ def iterate(context: StageContext, stages: StageSet, learning: Learning, iterati
             targets = importons.splat_targets(context, segment, raster)
             estimator.splat(targets, context.timers)  # Direct-, IndirectSplatting
             yield
-        if iteration.needs_radiance:
+        if exposure.needs_radiance:
             stages.final_gather.add(context, estimator.sums, importons.radiances, band, radii)
-        if iteration.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
+        if exposure.enters_film:  # UpdatePPMParams; the radii follow from the iteration's number (Eq. 2)
             listeners.band_ended(events)
-        if iteration.precedes_learning:
+        if exposure.precedes_learning:
             findings.append(_read_findings(events, stages, learning))
     _learn(context, stages, learning, iteration, findings)
     yield

@@ -110,7 +110,8 @@ class ProgressivePhotonMapper:
             yield
         direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)  # as the scene stands now
         iteration = dataclasses.replace(iteration, direct_world_flux=direct_world_flux)
-        yield from iterate(self.device_scene.context, self.stages, self.learning, iteration)
+        bands = self.device_scene.motion.iterations_of_bands(self.stages.bands, iteration)
+        yield from iterate(self.device_scene.context, self.stages, self.learning, iteration, bands)
         self.context.refuse_lost_memory()
 
     def skip(self, iterations: int) -> Iterator[None]:
@@ -165,7 +166,10 @@ class ProgressivePhotonMapper:
     def measure_noise(self) -> float:
         """Return the noise of the film's noisiest block (NoiseEstimate.measure); only with use_adaptive_sampling."""
         estimate, exposure = self.stages.noise_estimate, self.scene.exposure
-        return estimate.measure(self.device_scene.context, self.film.radiance, exposure, self._skipped, self.iteration)
+        iteration = Iteration(self.iteration, self.scene.settings.seed, skipped=self._skipped)
+        least = self.device_scene.motion.exposures(self.stages.bands, iteration)
+        context, film = self.device_scene.context, self.film.radiance
+        return estimate.measure(context, film, exposure, least.skipped, least.number)
 
     @property
     def splat_radii(self) -> tuple[float, float]:

@@ -56,9 +56,20 @@ class Shutter:
     lights: list[Movement] = field(default_factory=list)
     meshes: list[Deformation] = field(default_factory=list)
     camera: CameraMovement | None = None
+    rolling_duration: float = field(default=1.0, metadata=declared(minimum=0.0, maximum=1.0))
+    """Part of the time in which each row is exposed by a rolling shutter, one after the other from the top. 1 exposes
+    all rows together."""
+
+    @property
+    def is_rolling(self) -> bool:
+        """Whether rows are exposed one after the other."""
+        return self.rolling_duration < 1.0
 
     def time_of(self, fraction: float) -> float:
-        """The time, 0 to 1, by which a fraction of all the light that the shutter lets pass has passed."""
+        """The time, 0 to 1, by which a fraction of all the light that the shutter lets pass has passed. Of a rolling
+        shutter, whose curve is that of each row, the times of all rows together: they are as long."""
+        if self.is_rolling:
+            return fraction
         weights = np.maximum(np.nan_to_num(self.curve), 0.0)
         passed = np.concatenate([[0.0], np.cumsum(weights)])
         if passed[-1] <= 0.0:

@@ -2,6 +2,7 @@
 #include <CameraPath>
 #include <CameraPathFlags>
 #include <CameraPathsInMedia>
+#include <RayPortalPaths>
 
 // The least pdf of a path that no lobe has scattered.
 const float NO_PDF = 1e30;

@@ -15,5 +15,14 @@ bool may_pass(Closure closure, uint depth, uint limit) {
     return transparents_of(depth) < limit || !counts_as_transparent(closure);
 }
 
+// Takes out of a closure what a path of this depth may not pass straight, or by a ray portal.
+void limit_transparency(inout Closure closure, uint depth, uint limit) {
+    if (may_pass(closure, depth, limit)) return;
+    closure.transparent = vec3(0.0);
+#ifdef RAY_PORTALS
+    closure.flags |= CLOSURE_KEEPS_LIGHT;
+#endif
+}
+
 // Whether a path that passes through a surface comes into or out of its medium. It leaves that of a hidden object too.
 bool may_cross(Closure closure) { return (closure.flags & CLOSURE_UNSEEN) == 0u || closure_backfacing(closure); }

@@ -8,6 +8,7 @@
 // lint: PORTALS=1
 // lint: COUNTS_BOUNCES=1
 // lint: EMITTERS=lights/two_levels
+// lint: RAY_PORTALS=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
 layout(local_size_x = 64) in;
@@ -258,7 +259,7 @@ void main() {
     CameraPath path = camera_paths[index];
     uint flags = path.flags;
     if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || is_last_vertex(path)) return;
-    if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
+    limit_transparency(closure, path.depth, iteration.transparent_max_bounces);
     bool gathered = is_final_gather(path), gathers = can_gather(path, closure);
     vec3 throughput = path.throughput * segment_transmittance(flags, ray.origin, ray.direction, closure.distance);
     uvec4 choices =

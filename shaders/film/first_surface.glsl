@@ -2,8 +2,10 @@
 // The first surface of a camera path, which the passes show. As in Cycles, surfaces whose alpha is below the Alpha
 // Threshold of the view layer are skipped.
 
+#include "common/bsdf/ray_portal.glsl"
+
 bool is_skipped(Closure closure) {
-    vec3 transparent = closure.transparent;
+    vec3 transparent = seen_beyond(closure);
     return closure_hit(closure) && (transparent.r + transparent.g + transparent.b) / 3.0 > iteration.most_transparent;
 }
 

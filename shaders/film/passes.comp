@@ -6,6 +6,7 @@
 // lint: HAIR_LOBES=1
 // lint: ROUGHNESS_PASS=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: RAY_PORTALS=1
 // First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces below the
 // view layer's Alpha Threshold are skipped, and depth is measured along the view axis, or in a panorama along the ray.
 // Denoising Data is of the first surface that is not specular. Colors add up over all surfaces by their throughput.
@@ -179,7 +180,7 @@ bool add_denoising_data(CameraPath path, Closure closure, vec3 viewer, SeenThrou
         albedo += lobe_color;
         rough += weight;
     }
-    if (total <= 0.0 && largest(closure.transparent) > MOSTLY_TRANSPARENT) return false;
+    if (total <= 0.0 && largest(seen_beyond(closure)) > MOSTLY_TRANSPARENT) return false;
     add_to_pass(PASS_DENOISING_DEPTH, index, vec3(channel_mean(path.throughput * seen.here) * closure.distance));
     if (total > 0.0 && rough <= (1.0 - MOSTLY_SPECULAR) * total) return false;
     add_to_pass(PASS_DENOISING_ALBEDO, index, path.throughput * seen.here * albedo);

@@ -25,7 +25,7 @@ void main() {
     vec3 direction = vec3(sin(polar) * cos(azimuth), sin(polar) * sin(azimuth), cos(polar));
     Surface surface = Surface(direction, -direction, -direction, -direction, vec2(0.0), vec3(0.0), vec3(0.0),
                               NO_TRIANGLE, NO_INSTANCE, false, parameters.from_camera != 0u ? RAY_CAMERA : RAY_DIFFUSE,
-                              parameters.ray_length, 0u, 0u, 0u);
+                              parameters.ray_length, 0u, 0u, 0u, 0u);
     if (parameters.light_shape != 0u) surface = light_surface(uv, direction);
     ClosureBuilder builder = closure_builder(surface.viewer, surface.geometric, surface.normal, false, 0.0);
     evaluate_material(surface, parameters.first_constant, builder);

@@ -38,7 +38,7 @@ void main() {
         vec3(dot(parameters.to_world0, center), dot(parameters.to_world1, center), dot(parameters.to_world2, center));
     const vec3 UP = vec3(0.0, 0.0, 1.0);
     Surface surface = Surface(position, UP, UP, UP, vec2(0.0), vec3(0.0), vec3(0.0), NO_TRIANGLE, parameters.instance,
-                              false, RAY_DIFFUSE, 0.0, 0u, 0u, 0u);
+                              false, RAY_DIFFUSE, 0.0, 0u, 0u, 0u, 0u);
     ClosureBuilder builder = closure_builder(UP, UP, UP, false, 0.0);
     evaluate_material(surface, parameters.first_constant, builder);
     emissions[index] = vec4(builder.closure.emission, 0.0);

@@ -25,7 +25,7 @@ Surface light_surface(vec2 pixel, vec3 map_direction) {
     if (cone) direction = normalize(parameters.light_normal + at.x * u + at.y * v);
     Surface surface =
         Surface(parameters.light_position + parameters.light_radius * direction, direction, direction, direction, pixel,
-                vec3(0.0), vec3(0.0), NO_TRIANGLE, 0u, false, RAY_DIFFUSE, parameters.ray_length, 0u, 0u, 0u);
+                vec3(0.0), vec3(0.0), NO_TRIANGLE, 0u, false, RAY_DIFFUSE, parameters.ray_length, 0u, 0u, 0u, 0u);
     if (parameters.light_kind == LIGHT_SURFACE_AREA) {
         surface.normal = surface.geometric = parameters.light_normal;
         surface.position = parameters.light_position + (places ? at.x * u + at.y * v : vec3(0.0));

@@ -28,6 +28,7 @@ struct Surface {
     uint ray_depth;
     uint transparent_depth;
     uint bounce_counts;  // of the path, by type
+    uint portal_depth;   // ray portals that the path has passed
 };
 
 void triangle_points(uint triangle, out vec3 v0, out vec3 v1, out vec3 v2) {

@@ -2,4 +2,9 @@
 #include "common/camera_path.glsl"
 
 // Whether a camera path has come straight from the camera, so that its ray is that of its pixel.
-bool is_straight(uint flags) { return (flags & PATH_CAMERA_TRANSPARENT) != 0u && (flags & PATH_FINAL_GATHER) == 0u; }
+bool is_straight(CameraPath path) {
+#ifdef RAY_PORTALS
+    if (path.lit_from >= ONE_RAY_PORTAL) return false;
+#endif
+    return (path.flags & PATH_CAMERA_TRANSPARENT) != 0u && (path.flags & PATH_FINAL_GATHER) == 0u;
+}

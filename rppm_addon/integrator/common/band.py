@@ -29,12 +29,20 @@ class Band:
         return self.rows * self.columns
 
 
-def rows_of_bands(width: int, height: int) -> int:
-    """Return the rows of a band of a width x height region. The last band may have fewer."""
-    return max(1, min(height, MAXIMUM_BAND_PIXELS // width, MAX_RASTER_PIXELS))
+_ROLLING_BANDS = 128
+"""Number of bands, at most, whose rows a rolling shutter exposes together."""
 
 
-def bands_of(width: int, height: int) -> list[Band]:
-    """The bands of a width x height region, from below."""
-    rows = rows_of_bands(width, height)
+def rows_of_bands(width: int, height: int, is_rolling: bool = False) -> int:
+    """Return the rows of a band of a width x height region. The last band may have fewer.
+
+    is_rolling: whether a rolling shutter exposes the bands one after the other.
+    """
+    most = -(-height // _ROLLING_BANDS) if is_rolling else height
+    return max(1, min(most, MAXIMUM_BAND_PIXELS // width, MAX_RASTER_PIXELS))
+
+
+def bands_of(width: int, height: int, is_rolling: bool = False) -> list[Band]:
+    """The bands of a width x height region, from below; is_rolling: as for rows_of_bands."""
+    rows = rows_of_bands(width, height, is_rolling)
     return [Band(width, first, min(rows, height - first)) for first in range(0, height, rows)]

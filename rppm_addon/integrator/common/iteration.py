@@ -30,16 +30,20 @@ class Iteration:
     """Shadow rays of each vertex of a camera path."""
     weighs_noise: bool = False
     """Whether the noise of photons is measured apart from other noise, to choose later numbers of photons by it."""
+    film_count: int | None = None
+    """``number_in_film`` of bands of rows that a rolling shutter exposes in some iterations only; None: of others."""
 
     @property
     def number_in_film(self) -> int:
         """From 1, among those of the film; 0 before them."""
+        if self.film_count is not None:
+            return self.film_count
         return max(self.number - self.skipped, 0)
 
     @property
     def enters_film(self) -> bool:
         """Whether what the iteration finds is added to the film."""
-        return self.number > self.skipped
+        return self.number_in_film > 0
 
     @property
     def precedes_learning(self) -> bool:

@@ -7,6 +7,7 @@ from ...materials.traits.ashikhmin_shirley import has_ashikhmin
 from ...materials.traits.hair import has_hair
 from ...materials.traits.interiors import Interior
 from ...materials.traits.path_depths import asks_for_bounces_by_type
+from ...materials.traits.ray_portals import has_ray_portals
 from ...scene.passes import ROUGHNESS
 from ...scene.scene import Scene
 from .viewport_demands import ViewportDemands
@@ -42,6 +43,8 @@ class ShaderFeatures:
     """True where the pass Roughness is rendered."""
     filters_glossy: bool = False
     """True where blurred bounces blur the lobes that they see."""
+    has_ray_portals: bool = False
+    """True where paths go on elsewhere behind some surfaces."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
@@ -64,6 +67,7 @@ class ShaderFeatures:
             scene.settings.film_transparent and scene.settings.film_transparent_glass,
             ROUGHNESS in scene.settings.rendered_passes,
             scene.settings.blur_glossy > 0.0,
+            demands.has_ray_portals or any(has_ray_portals(material.graph) for material in scene.materials),
         )
 
     @property
@@ -83,5 +87,6 @@ class ShaderFeatures:
             "TRANSPARENT_GLASS": self.has_transparent_glass,
             "ROUGHNESS_PASS": self.shows_roughness,
             "FILTERS_GLOSSY": self.filters_glossy,
+            "RAY_PORTALS": self.has_ray_portals,
         }
         return {name: 1 for name, has in macros.items() if has}

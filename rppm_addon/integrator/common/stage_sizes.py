@@ -43,6 +43,8 @@ class StageSizes:
     """Whether light may go below surfaces."""
     features: ShaderFeatures = field(default_factory=ShaderFeatures)
     """Features that programs are compiled for."""
+    has_rolling_shutter: bool = False
+    """Whether rows are exposed one after the other."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
@@ -51,6 +53,7 @@ class StageSizes:
         passes = scene.settings.rendered_passes
         if demands.is_filtered:
             passes = with_filtered(passes)
+        is_rolling = scene.shutter is not None and scene.shutter.is_rolling
         return cls(
             width,
             height,
@@ -58,13 +61,14 @@ class StageSizes:
             scene.settings.photon_bounces + 1,
             passes,
             any(map(operator.attrgetter("shadow_catcher"), scene.instances)),
-            _first_camera_hits(scene.settings) if is_rasterized(scene.camera) else None,
+            _first_camera_hits(scene.settings, is_rolling) if is_rasterized(scene.camera) else None,
             scene.camera.texels is not None,
             scene.settings.use_adaptive_sampling,
             demands.is_filtered,
             _links_lights(scene),
             demands.has_subsurface or any(has_subsurface(material.graph) for material in scene.materials),
             ShaderFeatures.of(scene, demands),
+            is_rolling,
         )
 
     @property
@@ -85,13 +89,14 @@ class StageSizes:
     @property
     def bands(self) -> list[Band]:
         """Bands of the film, from below; the first has the most rows."""
-        return bands_of(self.width, self.height)
+        return bands_of(self.width, self.height, self.has_rolling_shutter)
 
 
-def _first_camera_hits(settings: RenderSettings) -> FirstCameraHits:
-    """Return the route: where two levels are asked for, the camera has no world triangles to rasterize."""
+def _first_camera_hits(settings: RenderSettings, is_rolling: bool) -> FirstCameraHits:
+    """Return the route: where two levels are asked for, the camera has no world triangles to rasterize, and a rolling
+    shutter has many bands, for each of which all triangles would be drawn."""
     route, in_levels = settings.first_camera_hits, settings.instancing is Instancing.TWO_LEVELS
-    return FirstCameraHits.TRACED if in_levels and route is FirstCameraHits.AUTOMATIC else route
+    return FirstCameraHits.TRACED if (in_levels or is_rolling) and route is FirstCameraHits.AUTOMATIC else route
 
 
 def _links_lights(scene: Scene) -> bool:
@@ -108,7 +113,7 @@ def film_pixels(sizes: StageSizes) -> int:
 
 def band_pixels(sizes: StageSizes) -> int:
     """Return the number of pixels of the largest band of rows."""
-    return sizes.width * rows_of_bands(sizes.width, sizes.height)
+    return sizes.width * rows_of_bands(sizes.width, sizes.height, sizes.has_rolling_shutter)
 
 
 def aov_channels(sizes: StageSizes) -> int:

@@ -61,6 +61,11 @@ class DeviceScene:
         return self._motion.moves
 
     @property
+    def motion(self) -> SceneMotion:
+        """Motion of the scene while its shutter is open."""
+        return self._motion
+
+    @property
     def context(self) -> StageContext:
         """For stages, at the moment that the scene was last moved to."""
         return StageContext(

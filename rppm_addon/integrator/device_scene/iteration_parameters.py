@@ -69,6 +69,7 @@ class IterationBlock(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._values: dict[str, object] = {}
+        self._radii: Mapping[str, float] = {}
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -98,9 +99,15 @@ class IterationBlock(BufferSet):
         }
         self._write(dict.fromkeys(RADIUS_PARAMETERS, 0.0))
 
+    def write_number_in_film(self, number: int) -> None:
+        """Take the number of the iteration among those of the film, for the bands of rows to come."""
+        self._values["number_in_film"] = number
+        self._write(self._radii)
+
     def write_radii(self, radii: Radii) -> None:
         """Take the radii of the iteration, once its photons are known."""
         self._write(radii.parameters)
 
     def _write(self, radii: Mapping[str, float]) -> None:
+        self._radii = radii
         self.buffer.write(ITERATION_PARAMETERS.pack({**self._values, **radii}))

@@ -2,31 +2,23 @@
 """Motion blur: each iteration is a moment while the shutter is open."""
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
 from ...scene.moving_scene import MovingScene
 from ...scene.scene import Scene
+from ..common.band import Band
 from ..common.iteration import Iteration
-from ..common.low_discrepancy import van_der_corput
 from ..common.require import require
 from ..surfaces.geometry import finite_bounds
 from ..surfaces.placements import placed_boxes
+from .moments import moment
+from .rolling_shutter import RollingShutter, iterations_of_bands
 
 _MOMENTS = 17
 """Evenly over the time of the shutter: where what moves is looked for beforehand."""
 _NOWHERE = (np.full(3, np.inf), np.full(3, -np.inf))
-
-
-def moment(iteration: int, seed: int) -> float:
-    """Return the time of an iteration (from 1) as the fraction, 0 to 1, of the light that the shutter lets pass before.
-
-    Of 2^k iterations each has a 2^k-th of the time, and a random place in it. That the points of what else an
-    iteration decides go through their indices in a shuffled order keeps it, such as the place on the lens, independent
-    of the time.
-    """
-    scramble = int(np.random.default_rng((seed, 1)).integers(1 << 32))
-    return van_der_corput(iteration - 1, scramble)
 
 
 def swept_bounds(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
@@ -90,3 +82,15 @@ class SceneMotion:
         """Return the scene as it is at an iteration's moment."""
         time = require(self.scene.shutter).time_of(moment(iteration.number, iteration.seed))
         return require(self._moving).at(time)
+
+    def iterations_of_bands(self, bands: Sequence[Band], iteration: Iteration) -> list[tuple[Band, Iteration]]:
+        """Return the bands that take part in an iteration, with the iteration as it is for each."""
+        return iterations_of_bands(self.scene.shutter, self.scene.camera, bands, iteration)
+
+    def exposures(self, bands: Sequence[Band], iteration: Iteration) -> Iteration:
+        """Return an iteration as the band sees it that has taken part in the film least."""
+        shutter = self.scene.shutter
+        if shutter is None or not shutter.is_rolling:
+            return iteration
+        count = RollingShutter(shutter, self.scene.camera, bands).least_count(iteration)
+        return dataclasses.replace(iteration, number=count, skipped=0)

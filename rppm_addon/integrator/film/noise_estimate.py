@@ -89,7 +89,10 @@ class NoiseEstimate(Listener):
     def band_ended(self, events: BandEvents) -> None:
         """Listener.band_ended: add the band's estimate, as Film does, of an iteration that belongs to the half."""
         iteration, band, sums = events.iteration, events.band, events.sums
-        if not is_in_half(iteration.number):
+        number, skipped = iteration.number, iteration.skipped
+        if iteration.film_count is not None:
+            number, skipped = iteration.film_count, 0
+        if not is_in_half(number):
             return
         with events.context.timers.stage("noise"):
             self._add.run(
@@ -99,7 +102,7 @@ class NoiseEstimate(Listener):
                     "count": band.pixel_count,
                     "quantum": sums.quantum,
                     "first_pixel": self._half.first_pixel(band),
-                    "number": count_in_half(iteration.number) - count_in_half(iteration.skipped),
+                    "number": count_in_half(number) - count_in_half(skipped),
                 },
             )
 

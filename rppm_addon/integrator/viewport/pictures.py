@@ -14,6 +14,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ...materials.traits.ashikhmin_shirley import has_ashikhmin
 from ...materials.traits.hair import has_hair
 from ...materials.traits.node_rays import casts_rays, traces_rays
+from ...materials.traits.ray_portals import has_ray_portals
 from ...materials.traits.subsurface import has_subsurface
 from ...scene.materials import Material
 from ...scene.scene import Scene
@@ -45,6 +46,7 @@ def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -
         has_subsurface=any(map(has_subsurface, coming)),
         has_hair=any(map(has_hair, coming)),
         has_ashikhmin=any(map(has_ashikhmin, coming)),
+        has_ray_portals=any(map(has_ray_portals, coming)),
         traces_rays=any(map(traces_rays, coming)),
         casts_rays=any(map(casts_rays, coming)),
     )

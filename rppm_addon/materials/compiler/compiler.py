@@ -15,6 +15,7 @@ from ...scene.passes import PassKind, RenderPass
 from ..dispersion import disperses
 from ..nodes import KINDS
 from ..nodes.node_kinds import COLOR, FLOAT, SHADER, NodeKind, SocketType
+from ..traits.ray_portals import has_ray_portals
 from ..traits.subsurface import has_subsurface
 from ..traits.transparency import asks_for_shadow_rays
 from .bump import Bump
@@ -93,6 +94,8 @@ class _Compiler:
             text += '#include "materials/shadow_rays.glsl"\n'
         if has_subsurface(self._graph):
             text += '#include "materials/subsurface.glsl"\n'
+        if has_ray_portals(self._graph):
+            text += '#include "materials/ray_portals.glsl"\n'
         if self._graph.normal is not None:
             self._sources[KINDS[BUMP].source] = None
             # Apart: what nodes ask of the surface may be another with the new normal.

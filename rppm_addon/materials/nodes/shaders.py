@@ -48,6 +48,9 @@ KINDS = {
         _WHITE | {"roughness": (FLOAT, 0.0), "ior": (FLOAT, 1.45)} | _NORMAL,
         {"distribution": ("BECKMANN", "GGX")},
     ),
+    "bsdf_ray_portal": _shader(
+        "bsdf", _WHITE | {"position": (VECTOR, "position"), "direction": (VECTOR, (0.0, 0.0, 0.0))}
+    ),
     "bsdf_sheen": _shader(
         "bsdf", _GRAY | {"roughness": (FLOAT, 0.5)} | _NORMAL, {"distribution": ("ASHIKHMIN", "MICROFIBER")}
     ),

@@ -6,7 +6,8 @@
 
 // Radiance that arrives at the origin of a final gather counts by the throughput there.
 void add_radiance(PathSegment segment, vec4 radiance) {
-    vec3 weight = is_final_gather(segment.path) ? final_gather_origins[segment.index].weight : vec3(1.0);
+    bool has_origin = is_final_gather(segment.path) && !is_medium_gather(segment.path);
+    vec3 weight = has_origin ? final_gather_origins[segment.index].weight : vec3(1.0);
     uint bounces = bounces_before_emission(bounces_of(segment.path.depth));
     radiances[segment.index] += vec4(clamped_light(weight * radiance.rgb, bounces), radiance.a);
 }

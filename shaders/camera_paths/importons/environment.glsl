@@ -66,6 +66,10 @@ void gather_environment_in_medium(PathSegment segment, vec3 environment, float s
 void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampling sampling) {
     uint index = segment.index;
     CameraPath path = segment.path;
+    if (is_behind_ray_portal(path)) {
+        add_radiance(segment, vec4(path.throughput * environment, 0.0));
+        return;
+    }
 #ifdef MEDIA
     if (is_medium_gather(path)) {
         gather_environment_in_medium(segment, environment, sampling.nominal_pdf);

@@ -21,10 +21,14 @@ bool is_medium_gather(CameraPath path) { return false; }
 
 // Whether a path may begin a final gather at a closure, or a secondary one. The first begins anywhere. In corners, near
 // the origin of a ray, the disk in which photons count reaches beyond the surface, to where there are no photons: there
-// a secondary one begins. Strands and points are too small for such disks, so that it begins on all of them.
+// a secondary one begins. Strands and points are too small for such disks, so that it begins on all of them. Nor do
+// photons bring the light that comes through ray portals: in scenes with such it begins everywhere.
 bool can_gather(CameraPath path, Closure closure) {
     if (iteration.final_gather == 0u || bounces_of(path.depth) >= iteration.camera_bounces) return false;
     if (!is_final_gather(path)) return true;
+#ifdef RAY_PORTALS
+    return true;
+#endif
     bool is_round = iteration.has_round_shapes != 0u && is_one_sided(triangle_vertices[3u * closure.triangle].w);
     bool is_corner = closure.distance < iteration.gathers_again_below;
     return (path.flags & PATH_CAUSTIC) == 0u && (is_round || is_corner);

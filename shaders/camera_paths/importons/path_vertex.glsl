@@ -78,7 +78,10 @@ SurfaceVertex surface_vertex(PathSegment segment, uint history) {
     CameraPath path = segment.path;
     Closure closure = closures[index];
     if ((closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u) path.throughput *= float(catcher_visibility[index]);
-    if (!may_pass(closure, path.depth, iteration.transparent_max_bounces)) closure.transparent = vec3(0.0);
+    limit_transparency(closure, path.depth, iteration.transparent_max_bounces);
+#ifdef RAY_PORTALS
+    if (is_last_vertex(path)) closure.flags |= CLOSURE_KEEPS_LIGHT;
+#endif
     PhotonRadii radii = photon_radii(index, path, segment.ray.direction, closure);
     return SurfaceVertex(index, path, segment.ray, history, closure, radii, can_gather(path, closure));
 }

@@ -48,9 +48,17 @@ BsdfSample sample_transparent(SurfaceVertex vertex, LobeSelection lobes) {
     bool stops_shadow_rays = (vertex.closure.flags & CLOSURE_SHADOWLESS) == 0u;
     uint flags = stops_shadow_rays ? (path.flags & ~(PATH_LIGHTS_FOUND | PATH_SEEN_THROUGH)) | PATH_CAUSTIC
                                    : path.flags | (path.scatter_pdf > 0.0 ? PATH_SEEN_THROUGH : 0u);
-    return BsdfSample(direction, vertex.closure.transparent, -direction, lobes.specular.x, true,
+    float probability = lobes.specular.x;
+#ifdef RAY_PORTALS
+    probability = largest(path.throughput * vertex.closure.transparent);
+#endif
+    return BsdfSample(direction, vertex.closure.transparent, -direction, probability, true,
                       stops_shadow_rays ? 0.0 : path.scatter_pdf, flags, SCATTER_NONE, vec3(1.0));
 }
+
+#ifdef RAY_PORTALS
+#include "camera_paths/importons/ray_portals.glsl"
+#endif
 
 // By one of the three lobes. weights: of those that are specular, or that store photons; u: selects the lobe, below
 // the sum of their weights.
@@ -101,6 +109,9 @@ BsdfSample sample_bsdf(SurfaceVertex vertex, LobeSelection lobes, bool gathers, 
     BsdfSample bsdf;
     if (!(u < weights.x)) bsdf = sample_selected_lobe(vertex, lobes, weights, u - weights.x, samples);
     else if (gathers) bsdf = sample_diffuse(vertex, lobes, u, samples.disk);
+#ifdef RAY_PORTALS
+    else if (!(u < largest(vertex.path.throughput * vertex.closure.transparent))) bsdf = sample_ray_portal(vertex);
+#endif
     else bsdf = sample_transparent(vertex, lobes);
     return bsdf;
 }

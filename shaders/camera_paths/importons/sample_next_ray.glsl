@@ -26,6 +26,9 @@ void extend_path(inout SurfaceVertex vertex, BsdfSample bsdf) {
         path.lit_from =
             pack_lit_from(light_set_at(closure.triangle), lit_from_behind(vertex.index, closure), vertex.can_gather);
     }
+#ifdef RAY_PORTALS
+    note_ray_portals(path, vertex.path.lit_from);
+#endif
     vertex.path = path;
 }
 
@@ -55,7 +58,11 @@ void spawn_ray(SurfaceVertex vertex, BsdfSample bsdf) {
     Closure closure = vertex.closure;
     vec3 geometric = unpack_unit_vector(closure.geometric_normal);
     float side = dot(bsdf.direction, geometric);
-    if (!(largest(vertex.path.throughput) > 0.0) || (bsdf.transmitted ? side >= 0.0 : side <= 0.0)) return;
+    bool is_wrong_side = bsdf.transmitted ? side >= 0.0 : side <= 0.0;
+#ifdef RAY_PORTALS
+    is_wrong_side = is_wrong_side && !by_ray_portal;
+#endif
+    if (!(largest(vertex.path.throughput) > 0.0) || is_wrong_side) return;
     if (bsdf.transmitted && may_cross(closure))
         vertex.path.flags = cross_surface(vertex.path.flags, closure.material, closure_backfacing(closure));
     camera_paths[vertex.index] = vertex.path;
@@ -64,6 +71,9 @@ void spawn_ray(SurfaceVertex vertex, BsdfSample bsdf) {
     bool catches_shadows = (closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u;
     rays[vertex.index] =
         Ray(origin, closure.triangle, bsdf.direction, catches_shadows ? ESCAPING_DISTANCE : INFINITY_DISTANCE);
+#ifdef RAY_PORTALS
+    if (by_ray_portal) rays[vertex.index] = ray_behind_portal(vertex, origin, bsdf.direction);
+#endif
 }
 
 // The path ends here by Russian roulette, begins a final gather, or goes on by the specular lobes.
@@ -73,6 +83,9 @@ void sample_next_ray(SurfaceVertex vertex, LobeSelection lobes, RaySamples sampl
     float u = samples.lobe * (lobes.total / lobes.survival);
     float gather_weight = vertex.can_gather ? sum(lobes.stored) : 0.0;
     bool gathers = u < gather_weight, is_secondary = is_final_gather(vertex.path);
+#ifdef RAY_PORTALS
+    if (gathers) vertex.path.lit_from &= ~BEHIND_RAY_PORTAL;
+#endif
 #ifdef TRANSPARENT_GLASS
     if (gathers && !is_secondary) vertex.path.flags &= ~PATH_BEHIND_CLEAR_GLASS;
 #endif

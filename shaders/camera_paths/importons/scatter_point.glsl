@@ -8,8 +8,18 @@
 #include "camera_paths/importons/final_gather.glsl"
 #include "camera_paths/importons/clear_glass.glsl"
 
-// A path's lit_from is a light set, with flags above it.
+// A path's lit_from is a light set, with flags above it, and in scenes with ray portals the number of those passed.
 const uint LIT_FROM_BEHIND = 64u, LIT_GATHER_ORIGIN = 128u;
+
+// Whether a path of a final gather has come through a ray portal since its ray left: shadow rays and photons bring
+// nothing of what it finds.
+bool is_behind_ray_portal(CameraPath path) {
+#ifdef RAY_PORTALS
+    return (path.lit_from & BEHIND_RAY_PORTAL) != 0u;
+#else
+    return false;
+#endif
+}
 
 uint pack_lit_from(uint light_set, bool from_behind, bool is_gather_origin) {
     return light_set | (from_behind ? LIT_FROM_BEHIND : 0u) | (is_gather_origin ? LIT_GATHER_ORIGIN : 0u);
@@ -19,7 +29,7 @@ uint pack_lit_from(uint light_set, bool from_behind, bool is_gather_origin) {
 // an MIS weight, since shadow rays find the same lights. Without them, and behind a secondary gather, it does not.
 bool path_collects_emission(CameraPath path) {
     bool is_direct = (path.flags & PATH_CAUSTIC) == 0u && !is_secondary_gather(path);
-    return !is_final_gather(path)
+    return !is_final_gather(path) || is_behind_ray_portal(path)
            || (is_direct && !is_medium_gather(path) && iteration.next_event != 0u && path.scatter_pdf > 0.0);
 }
 
@@ -34,7 +44,7 @@ vec3 scatter_position(uint index, CameraPath path, Ray ray) {
 ScatterPoint scatter_point(uint index, CameraPath path, Ray ray) {
     vec3 position = scatter_position(index, path, ray);
     LitPoint lit = LitPoint(position, vec3(0.0), false, light_set_at(ray.source_triangle));
-    bool gathers = is_final_gather(path);
+    bool gathers = is_final_gather(path) && !is_behind_ray_portal(path);
     uint bounces = bounces_of(path.depth);
     ScatterPoint from = ScatterPoint(lit, 0.0, path.scatter_pdf, gathers, gathers ? bounces - 1u : bounces);
     if (path.scatter_pdf > 0.0) {

@@ -4,13 +4,16 @@
 
 #include "common/iteration.glsl"
 #include "common/bsdf/stored_lobes.glsl"
+#ifdef RAY_PORTALS
+#include "common/bsdf/ray_portal.glsl"
+#endif
 
 float sum(vec4 v) { return v.x + v.y + v.z + v.w; }
 
 // Selection weights of a closure. They are not normalized: the probability of a lobe is its weight over the total,
 // times the survival probability of the path.
 struct LobeSelection {
-    vec4 specular;  // of the transparent part, and of the three lobes where they are specular
+    vec4 specular;  // of the transparent part with the ray portal, and of the three lobes where they are specular
     vec4 stored;    // of the diffuse and translucent parts together, and of the three lobes where they store photons
     float total;  // sum of the weights of all lobes by which the path may go on: a final gather follows the stored ones
     float survival;  // probability of surviving Russian roulette
@@ -28,6 +31,9 @@ LobeSelection select_lobes(uint path, Closure closure, vec3 throughput, vec3 wo,
         vec4(largest(throughput * closure.transparent), 0.0, 0.0, 0.0),
         vec4(largest(throughput * closure.diffuse) + largest(throughput * closure.translucent), 0.0, 0.0, 0.0), 0.0,
         1.0);
+#ifdef RAY_PORTALS
+    selection.specular.x += largest(throughput * ray_portal_weight(closure, closures[path].lobes[CLOSURE_LOBES - 1]));
+#endif
     for (int k = 0; k < closure_lobes(closure); ++k) {
         MicrofacetLobe lobe = stored_lobe(path, k);
         float weight = largest(throughput * lobe_albedo(lobe, lobe_cosine(lobe, wo)));

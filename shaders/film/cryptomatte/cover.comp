@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 #include "common/iteration.glsl"
 #include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
+#include "common/bsdf/ray_portal.glsl"
 #include "common/camera_path.glsl"
 uniform Parameters { CryptomatteParameters parameters; };
 readonly buffer Closures;
@@ -59,7 +60,7 @@ void main() {
     Closure closure = closures[index];
     if ((path.flags & PATH_CAMERA_TRANSPARENT) == 0u || !closure_hit(closure) || closure_holdout(closure) >= 1.0)
         return;
-    vec3 transparent = closure.transparent, throughput = path.throughput;
+    vec3 transparent = seen_beyond(closure), throughput = path.throughput;
     bool catches = (closure.flags & CLOSURE_CATCHES_SHADOWS) != 0u;
     // The layers follow each other: another one may have noted this very catcher.
     if (any_catchers && caught_after[index] != 0u && caught_after[index] <= parameters.segment) return;

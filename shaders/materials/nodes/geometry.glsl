@@ -161,10 +161,11 @@ void node_light_path(Surface surface, out float is_camera_ray, out float is_shad
     is_transmission_ray = (surface.ray & RAY_TRANSMISSION) != 0u ? 1.0 : 0.0;
     is_reflection_ray = is_glossy_ray > 0.0 || is_diffuse_ray > 0.0 ? 1.0 - is_transmission_ray : 0.0;
     is_shadow_ray = (surface.ray & RAY_SHADOW) != 0u ? 1.0 : 0.0;
-    is_volume_scatter_ray = portal_depth = 0.0;
+    is_volume_scatter_ray = 0.0;
     ray_length = surface.ray_length;
     ray_depth = float(surface.ray_depth);
     transparent_depth = float(surface.transparent_depth);
+    portal_depth = float(surface.portal_depth);
     diffuse_depth = float(count_of(surface.bounce_counts, SCATTER_DIFFUSE));
     glossy_depth = float(count_of(surface.bounce_counts, SCATTER_GLOSSY));
     transmission_depth = float(count_of(surface.bounce_counts, SCATTER_TRANSMISSION));

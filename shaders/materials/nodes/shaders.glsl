@@ -83,6 +83,12 @@ void node_subsurface_scattering(inout ClosureBuilder builder, float weight, int 
 }
 #endif
 
+#ifdef MATERIAL_RAY_PORTAL
+void node_bsdf_ray_portal(inout ClosureBuilder builder, float weight, vec3 color, vec3 position, vec3 direction) {
+    add_ray_portal(builder, weight * max(color, 0.0), position, direction);
+}
+#endif
+
 vec3 conductor_reflectance(float cosine, vec3 n, vec3 k) {
     float c2 = cosine * cosine, s2 = 1.0 - c2;
     vec3 d = n * n - k * k - s2;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 RAY_PORTALS=1
 // Camera rays to which photon beams are to add light.
 
 layout(local_size_x = 64) in;
@@ -28,7 +29,7 @@ void main() {
     if (index == NO_PATH) return;
     Ray ray = rays[index];
     CameraPath path = camera_paths[index];
-    if (!(ray.maximum_distance > 0.0) || !is_straight(path.flags)) return;
+    if (!(ray.maximum_distance > 0.0) || !is_straight(path)) return;
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
     if (!path_may_scatter(path.flags) || !is_thin(path.flags, parameters.least_free_path)) return;
     float far = closure_hit(closures[index]) ? closures[index].distance : INFINITY_DISTANCE;

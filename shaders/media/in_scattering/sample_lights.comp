@@ -3,6 +3,7 @@
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: MEDIA=1 PORTALS=1
+// lint: MEDIA=1 RAY_PORTALS=1
 // Shadow rays from points in scattering media, one on each camera ray: light that is scattered once. The point is
 // sampled as the media scatter light, or by the angle at which the light sees the ray (Kulla and Fajardo 2012,
 // Importance Sampling Techniques for Path Tracing in Participating Media); MIS combines both.
@@ -109,8 +110,9 @@ void main() {
     leave_no_light(index);
     Ray ray = rays[index];
     CameraPath path = camera_paths[index];
-    bool takes_media = (path.flags & PATH_FINAL_GATHER) == 0u || is_medium_gather(path);
-    if (!(ray.maximum_distance > 0.0) || !takes_media || bounces_of(path.depth) > iteration.camera_bounces) return;
+    if (!(ray.maximum_distance > 0.0) || !takes_scattered_light(path)
+        || bounces_of(path.depth) > iteration.camera_bounces)
+        return;
     if (!path_may_scatter(path.flags)) return;
     float far = medium_vertices[index].far;
     MediumSegment segment = MediumSegment(ray, far, path.flags, medium_vertices[index].thickness);
@@ -150,7 +152,8 @@ void main() {
     uint link = 0u;
     if (iteration.links_lights != 0u)
         link = sampled.triangle != NO_TRIANGLE ? emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT : light.link;
-    contributions[index] = vec4(parameters.sample_weight * radiance, signed_code(false, link));
+    contributions[index] =
+        vec4(parameters.sample_weight * radiance, signed_code(scattered_light_is_gathered(path), link));
     light_triangles[index] = sampled.triangle;
     if (parameters.splits_light != 0u) light_splits[index] = LightSplit(vec3(0.0), choice.light, vec3(0.0), 0.0);
     float reach = sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance) : INFINITY_DISTANCE;

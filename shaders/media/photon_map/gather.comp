@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
+// lint: MEDIA=1 RAY_PORTALS=1
 // lint: MEDIA=1 EMISSIVE_MEDIA=1
 // Each ray of a camera path in scattering media gathers the photons around one point on it, which is sampled as
 // media scatter light, with a three-dimensional kernel. The rays of final gathers leave that light to the photons at
@@ -132,13 +133,11 @@ void main() {
     if (index == NO_PATH) return;
     Ray ray = rays[index];
     CameraPath path = camera_paths[index];
-    bool takes_media = (path.flags & PATH_FINAL_GATHER) == 0u || is_medium_gather(path);
-    if (!(ray.maximum_distance > 0.0) || !takes_media) return;
+    if (!(ray.maximum_distance > 0.0) || !takes_scattered_light(path)) return;
     if (parameters.straight_photons == 0u && path.medium_passing < 1.0) return;
     if (bounces_of(path.depth) > iteration.camera_bounces) return;
     if (!path_may_scatter(path.flags)) return;
-    if (parameters.draws_beams != 0u && is_straight(path.flags) && is_thin(path.flags, parameters.least_free_path))
-        return;
+    if (parameters.draws_beams != 0u && is_straight(path) && is_thin(path.flags, parameters.least_free_path)) return;
     GatherPoint point = gather_point(index, path, ray);
     if (!(largest(point.scattering) > 0.0)) return;
     float radius = smooth_radius(point);
@@ -185,5 +184,5 @@ void main() {
         any = true;
         collect_photon(collected, index, candidate.w, radiance);
     }
-    if (any) write_collected(index, false, collected);
+    if (any) write_collected(index, scattered_light_is_gathered(path), collected);
 }

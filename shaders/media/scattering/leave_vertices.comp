@@ -1,6 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lint: MEDIA=1
+// lint: MEDIA=1 RAY_PORTALS=1
 // Camera paths go on from their vertices in media by a final gather, which no neighbor reuses: their throughput is that
 // of the path from the camera on. They have nothing to do with the surfaces at the ends of their rays any more.
 
@@ -48,6 +49,9 @@ void main() {
     path.least_pdf = min(path.least_pdf, vertex.phase_pdf);
     path.depth += ONE_BOUNCE;
     path.bounce_counts = medium_counted(path.bounce_counts);
+#ifdef RAY_PORTALS
+    path.lit_from &= ~BEHIND_RAY_PORTAL;
+#endif
     path.medium_passing = 1.0;
     camera_paths[index] = path;
     rays[index] = Ray(vertex.position, NO_TRIANGLE, vertex.direction, INFINITY_DISTANCE);

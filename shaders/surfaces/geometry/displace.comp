@@ -34,7 +34,7 @@ Surface surface_of(DisplacedVertex vertex) {
     surface.backfacing = false;
     surface.ray = 0u;
     surface.ray_length = 0.0;
-    surface.ray_depth = surface.transparent_depth = 0u;
+    surface.ray_depth = surface.transparent_depth = surface.portal_depth = 0u;
     return surface;
 }
 

@@ -32,6 +32,7 @@ readonly buffer PathFlags { uint path_words[]; };
 #include "materials/generated.glsl"
 
 #include <PathKinds>
+#include <RayPortalPaths>
 #include <AdjointSegments>
 
 uint path_flags(uint index) {
@@ -56,6 +57,13 @@ uint path_bounce_counts(uint index) {
     if (parameters.path_kind == PATH_OF_CAMERA)
         return path_words[parameters.camera_stride * index + parameters.camera_bounce_counts];
     return parameters.path_kind == PATH_OF_PHOTON ? counted(0u, SCATTER_DIFFUSE) : 0u;
+}
+
+// The number of ray portals that a path has passed.
+uint path_portals(uint index) {
+    return parameters.path_kind == PATH_OF_CAMERA
+               ? path_words[parameters.camera_stride * index + parameters.camera_lit_from] / ONE_RAY_PORTAL
+               : 0u;
 }
 
 // How far a path had come straight through surfaces before its ray began.
@@ -97,6 +105,7 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     surface.ray_depth = bounces_of(depth) + (parameters.path_kind == PATH_OF_CAMERA ? 0u : 1u);
     surface.transparent_depth = transparents_of(depth);
     surface.bounce_counts = path_bounce_counts(index);
+    surface.portal_depth = path_portals(index);
 #ifdef ROUND_SHAPES
     make_round(surface);
 #endif
@@ -304,6 +313,9 @@ void main() {
     bool unseen =
         parameters.path_kind == PATH_OF_CAMERA && (instance.visibility & surface.ray & RAYS_WITH_VISIBILITY) == 0u;
     if (!unseen) evaluate_nodes(surface, material, flags, next_random(random), builder);
+#ifdef MATERIAL_RAY_PORTAL
+    hold_ray_portal(surface, builder);
+#endif
 #ifdef MATERIAL_SUBSURFACE
     hold_subsurface_of(instance, builder);
 #endif

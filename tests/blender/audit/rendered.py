@@ -48,7 +48,8 @@ RENDERED = {
     "moving": """
         Scene.frame_current Scene.frame_subframe CyclesObjectSettings.motion_steps
         CyclesObjectSettings.use_deform_motion CyclesObjectSettings.use_motion_blur
-        CyclesRenderSettings.rolling_shutter_type RenderSettings.frame_map_new RenderSettings.frame_map_old
+        CyclesRenderSettings.rolling_shutter_duration CyclesRenderSettings.rolling_shutter_type
+        RenderSettings.frame_map_new RenderSettings.frame_map_old
         RenderSettings.motion_blur_position RenderSettings.motion_blur_shutter ViewLayer.use_motion_blur
     """,
     "strands": """

@@ -152,7 +152,7 @@ WITHOUT_EFFECT = {
         Camera.custom_shader CameraStereoData.pole_merge_angle_from CameraStereoData.pole_merge_angle_to
         CameraStereoData.use_pole_merge CyclesObjectSettings.ao_distance CyclesRenderSettings.ao_bounces
         CyclesRenderSettings.ao_bounces_render CyclesRenderSettings.fast_gi_method
-        CyclesRenderSettings.film_transparent_roughness CyclesRenderSettings.rolling_shutter_duration
+        CyclesRenderSettings.film_transparent_roughness
         CyclesRenderSettings.sample_offset CyclesRenderSettings.sample_subset_length RenderSettings.threads
         Volume.velocity_grid Volume.velocity_scale Volume.velocity_unit WorldLighting.distance
     """,

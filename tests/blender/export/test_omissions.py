@@ -43,11 +43,6 @@ def subdivide(scene):
     subdivide_adaptively(the(scene, "MESH"))
 
 
-def roll(scene):
-    scene.render.use_motion_blur = True
-    scene.cycles.rolling_shutter_type = "TOP"
-
-
 def see_through(scene):
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
 
@@ -112,7 +107,6 @@ USES = {
     "Sampling Pattern": of_cycles("sampling_pattern", "BLUE_NOISE"),
     "Threads": fix_threads,
     "Velocity Grid": blow,
-    "Rolling Shutter": roll,
     "Shadow Catcher": catch_shadows,
     "Biased volumes": step,
     "Transparent Glass": see_through,

@@ -130,7 +130,9 @@ def test_the_panorama_panel(scene):
 def test_motion_blur_panels(scene):
     records = drawn_panels(panels.motion.CLASSES, context_of(scene))
     shown = {name for record in records.values() for name in record.properties}
-    assert shown == {"use_motion_blur", "motion_blur_position", "motion_blur_shutter", "motion_blur_shutter_curve"}
+    rolling = {"rolling_shutter_type", "rolling_shutter_duration"}
+    of_blender = {"use_motion_blur", "motion_blur_position", "motion_blur_shutter", "motion_blur_shutter_curve"}
+    assert shown == of_blender | rolling
     assert len(records["RPPM_PT_motion_blur_curve"].operators) == 6
     panel = panels.motion.RPPM_PT_object_motion_blur
     context = context_of(scene, object=add_mesh(scene))

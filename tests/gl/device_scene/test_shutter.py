@@ -10,7 +10,7 @@ from moving_scenes import BALL, everything_moves, open_for, way
 from support.lobes import Lobe, LobeKind, material
 from support.render_states import assert_goes_on
 
-from rppm_addon.integrator.device_scene.shutter import moment
+from rppm_addon.integrator.device_scene.moments import moment
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Aperture, Camera, Instance, Light, LightKind, MovingScene, RenderSettings, Scene
 from rppm_addon.session.render.renderer import Renderer

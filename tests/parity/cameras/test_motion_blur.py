@@ -95,6 +95,22 @@ def test_the_shutter_curve(renderer):
     compare_with_cycles(renderer, "curve")
 
 
+@pytest.mark.parametrize("duration", [0.3, pytest.param(0.0, marks=pytest.mark.long)])
+def test_a_rolling_shutter(renderer, duration):
+    """A bar that moves along the picture leans, with its shadow; each row is blurred by a part of its way."""
+    stage()
+    post = box((0.2, 0.2, 1.0), material(DIFFUSE, Color=(0.8, 0.2, 0.1)), place(at=(0.0, 0.0, 0.6)))
+    animate(post, "location", (-1.2, 0.0, 0.6), (0.0, 0.0, 0.6), (1.2, 0.0, 0.6))
+    blur()
+    roll(duration)
+    compare_with_cycles(renderer, f"rolling_{duration}", iterations=96)
+
+
+def roll(duration: float) -> None:
+    cycles = bpy.context.scene.cycles
+    cycles.rolling_shutter_type, cycles.rolling_shutter_duration = "TOP", duration
+
+
 @pytest.mark.long
 def test_a_moving_camera_that_zooms(renderer):
     stage()

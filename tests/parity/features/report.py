@@ -82,7 +82,7 @@ NAMED = (
     ("Sky Texture in a material", "its sun is left out", "has a sun, which is rendered in worlds alone"),
     ("Nodes of lights that vary by place and by direction", "one of the two counts",
      "its nodes vary by place and by direction"),
-    ("Ray Portal, Shader to RGB, Script and nodes of newer versions of Blender",
+    ("Shader to RGB, Script and nodes of newer versions of Blender",
      "a diffuse surface of the node's color, or the value of the socket that it feeds, stands in",
      "is not rendered yet"),
     ("A choice of a node that RPPM does not have", "the first choice stands in", "which is not rendered"),

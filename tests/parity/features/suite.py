@@ -10,7 +10,7 @@ from .surfaces import fibers  # noqa: F401
 from .lighting import light_limits, light_linking, light_paths, lights  # noqa: F401
 from .surfaces import media, metallic  # noqa: F401
 from .lighting import portals, profiles  # noqa: F401
-from .surfaces import ray_nodes, shaders  # noqa: F401
+from .surfaces import ray_nodes, ray_portals, shaders  # noqa: F401
 from .lighting import shadow_terminator  # noqa: F401
 from .shapes import simplify  # noqa: F401
 from .values import nodes, zones_and_closures  # noqa: F401

@@ -14,7 +14,7 @@ from .lighting import portals
 from .row_tests import assert_near_cycles
 from .shapes import displacement, strands
 from .suite import ROWS
-from .surfaces import ashikhmin_shirley, fibers, media, metallic, ray_nodes
+from .surfaces import ashikhmin_shirley, fibers, media, metallic, ray_nodes, ray_portals
 from .values import zones_and_closures
 
 DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", "Driven: Normal by a bump")
@@ -22,7 +22,7 @@ DRIVEN_OFTEN = ("Driven: Base Color by an image", "Driven: Roughness by noise", 
 
 MODULES_OF_THEIR_OWN = {
     ashikhmin_shirley.GROUP, displacement.GROUP, *fibers.GROUPS, media.GROUP, metallic.GROUP, portals.GROUP,
-    *ray_nodes.GROUPS, *strands.GROUPS, zones_and_closures.GROUP,
+    *ray_nodes.GROUPS, ray_portals.GROUP, *strands.GROUPS, zones_and_closures.GROUP,
 }  # fmt: skip
 VALUES_ELSEWHERE = {
     "Textures", "Radial Tiling", "Mapping", "Math", "Vector Math", "Mix", "Color Ramp", "Colors", "Map Range",

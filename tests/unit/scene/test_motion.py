@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.floor import floor_scene
 
-from rppm_addon.integrator.device_scene.shutter import moment, swept_bounds
+from rppm_addon.integrator.device_scene.moments import moment
+from rppm_addon.integrator.device_scene.shutter import swept_bounds
 from rppm_addon.scene import CameraMovement, Deformation, Light, LightKind, Movement, MovingScene, Scene, Shutter
 from rppm_addon.scene.storage.sharing import equal, same_members, share
 from rppm_addon.scene.storage.storage import load_scene, save_scene

@@ -29,12 +29,6 @@ def _is_diced_by(name: str, default: object) -> Callable[[bpy.types.Scene], bool
 
 OF_SCENES = (
     Omission(
-        "Rolling Shutter",
-        "all of the picture is exposed at once",
-        ("render.use_motion_blur", "cycles.rolling_shutter_type"),
-        lambda scene: scene.render.use_motion_blur and of_cycles(scene, "rolling_shutter_type", "NONE") != "NONE",
-    ),
-    Omission(
         "Biased volumes",
         "light passes voxels exactly, as in Cycles without Biased; Step Rate and Max Steps have no effect",
         ("cycles.volume_biased",),

@@ -63,6 +63,14 @@ def shutter_curve(mapping: bpy.types.CurveMapping) -> np.ndarray:
     return np.array([max(mapping.evaluate(curve, place), 0.0) for place in places])
 
 
+def rolling_duration(scene: bpy.types.Scene) -> float:
+    """Return the part of the shutter's time in which each row is exposed; 1 without a rolling shutter."""
+    cycles = getattr(scene, "cycles", None)
+    if getattr(cycles, "rolling_shutter_type", "NONE") == "NONE":
+        return 1.0
+    return min(max(float(cycles.rolling_shutter_duration), 0.0), 1.0)
+
+
 def step_times(steps: int) -> tuple[float, ...]:
     """Times of an object's keys, 0 to 1: those of fewer steps are among those of more."""
     count = 1 << steps
@@ -272,6 +280,7 @@ class MotionExporter:
             list(self._movements(placed.lights, placed.identities)),
             list(self._deformations(meshes)),
             self._camera_movement(scene),
+            rolling_duration(self._depsgraph.scene_eval),
         )
         still = not (shutter.instances or shutter.lights or shutter.meshes or shutter.camera)
         return None if still else shutter

@@ -31,6 +31,14 @@ class RPPM_PT_motion_blur(RppmPanel, bpy.types.Panel):
         column.active = render.use_motion_blur
         column.prop(render, "motion_blur_position", text="Position")
         column.prop(render, "motion_blur_shutter")
+        if not cycles_properties.are_there():
+            cycles_properties.draw_remedy(column, "Rolling Shutter")
+            return
+        cycles = context.scene.cycles
+        column.prop(cycles, "rolling_shutter_type", text="Rolling Shutter")
+        column = column.column()
+        column.active = cycles.rolling_shutter_type != "NONE"
+        column.prop(cycles, "rolling_shutter_duration", text="Duration")
 
 
 class RPPM_PT_motion_blur_curve(RppmPanel, bpy.types.Panel):

@@ -93,6 +93,16 @@ the path as it goes on from there; both are 0 where nobody asks. The fourth coun
 media. ``medium_passing`` is the probability with which media leave the path to the surface at the end of its ray, 1
 where they do not scatter it, or SCATTERED_BY_MEDIUM where they have. ``least_pdf`` is the least of the pdfs by
 which lobes and media have scattered the path, 1/sr, where Filter Glossy asks."""
+LIT_FROM_BITS = 1 << 8
+"""First bit of ``lit_from`` behind those of a light set and its flags."""
+Constants(
+    "RayPortalPaths",
+    LIT_FROM_BITS=LIT_FROM_BITS,
+    BEHIND_RAY_PORTAL=LIT_FROM_BITS,
+    ONE_RAY_PORTAL=LIT_FROM_BITS << 1,
+)
+"""In ``lit_from``: the flag of paths that have passed a ray portal since the ray of their final gather left, and the
+number of ray portals that they have passed, above it."""
 SCATTERED_BY_MEDIUM = -1.0
 Constants("CameraPathsInMedia", SCATTERED_BY_MEDIUM=SCATTERED_BY_MEDIUM)
 StorageBlock("CameraPaths", "CameraPath camera_paths[];")

@@ -74,8 +74,6 @@ lit(GROUP, "RANDOM_WALK", subsurface(0.5), effort=2)
 lit(GROUP, "anisotropy 0.8, smooth", subsurface(0.5, SMOOTH), effort=2)
 lit(GROUP, "RANDOM_WALK_SKIN", subsurface(0.2, falloff="RANDOM_WALK_SKIN"), effort=2)
 lit(GROUP, "BURLEY", subsurface(0.5, falloff="BURLEY"), effort=2, **STANDS_IN)
-PORTAL = {"mean": 0.8, "block": 8.0, "warns": True, "reason": "a diffuse surface stands in"}
-lit("Ray Portal", "plain", shader("BsdfRayPortal"), effort=2, **PORTAL)
 
 # --- Principled -----------------------------------------------------------------------------------------
 
