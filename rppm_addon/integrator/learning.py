@@ -5,8 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene.meshes import RayVisibility
-from ..scene.settings import DirectLight
 from .common.iteration import Iteration
 from .common.photon_counts import NoiseSamples, NoiseVariances, PhotonCounts, camera_cost, photon_cost
 from .common.require import require
@@ -14,16 +12,9 @@ from .density_estimation.radii import Radii
 from .density_estimation.radius_schedule import RadiusSchedule
 from .density_estimation.stored_photons import PhotonList
 from .device_scene.stage_context import StageContext
-from .lights.lights import Lights
 from .photons.photons import Photons
-from .pilot_view import PilotView, at_pixels
+from .pilot_view import at_pixels
 
-_MOST_LEAVING = 0.25
-"""Fraction of gathering rays that leave the scene, below which photons may share the world's direct light. Where more
-leave, rays find that light as well as photons or better."""
-_LEAST_UNCOVERED = 0.02
-"""Least fraction of the gathering rays leaving the scene that pass no portal, for photons to share the world's direct
-light. Where more rays pass portals, shadow rays find nearly all of that light there."""
 _WEIGHED_AT = 64
 """The iteration with whose radii the noise of photons is weighed."""
 
@@ -38,21 +29,21 @@ class BandFindings:
     """PhotonNoise.sample, where the noise is weighed."""
 
 
-def may_share_world_light(context: StageContext) -> bool:
-    """Whether photons may bring a part of the world's direct light."""
-    by_rays = context.settings.direct_light is DirectLight.RAYS and context.gathers
-    return by_rays and context.lights.world_photon_flux > 0.0
-
-
 class Learning:
     """Radii and photons of a picture's iterations. Those of the first follow from the pilot view."""
 
-    def __init__(self, context: StageContext, pilot: PilotView) -> None:
+    def __init__(self, context: StageContext, footprints: np.ndarray) -> None:
+        """Begin with what the pilot view found.
+
+        Args:
+            context: context of the stages, with the scene.
+            footprints: (rows, columns) Eq. 3 radii of the pilot view, meters; 0 where there is no importon.
+        """
         settings, camera = context.settings, context.scene.camera
-        self.leaves_importon = pilot.footprints > 0
+        self.leaves_importon = footprints > 0
         """(rows, columns) of the pilot view."""
         self.radius_schedule = RadiusSchedule(
-            settings, camera, context.geometry, pilot.footprints, context.scene.photon_count, context.gathers
+            settings, camera, context.geometry, footprints, context.scene.photon_count, context.gathers
         )
         self._size = camera.resolution
         self.weighs_noise = settings.photons == 0 and context.gathers
@@ -63,8 +54,6 @@ class Learning:
         self.rest: np.ndarray | None = None
         """(rows, columns) float32, where photons are automatic: luminance of samples of the last iteration that was
         learned from, without that of photons."""
-        leaves_little = 0.0 < pilot.leaving_fraction < _MOST_LEAVING
-        self._shares_world_light = leaves_little and pilot.uncovered_fraction >= _LEAST_UNCOVERED
         self.global_photons_found: float | None = None
         """Result of RadiusSchedule.photons_found for the last iteration; None if no photons were counted."""
 
@@ -77,12 +66,6 @@ class Learning:
     def photon_fraction(self, iteration: Iteration) -> float:
         """Photons of an iteration over those of the first."""
         return iteration.photon_count / self.photon_counts.first
-
-    def direct_world_flux(self, lights: Lights) -> float:
-        """Iteration's, of the next one: where few rays leave the scene, photons find in, and all rays see the world."""
-        seen_by_all = lights.world_visibility | RayVisibility.VOLUME_SCATTER == RayVisibility.ALL
-        shares = self._shares_world_light and seen_by_all
-        return lights.world_photon_flux if shares else 0.0
 
     def tally(
         self,

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Rasterization-based progressive photon mapping: a scene, its film, and the iterations in between."""
 
-import dataclasses
 import time
 from collections.abc import Iterator
 
@@ -22,9 +21,9 @@ from .deep_cubemap.deep_cubemap import DeepCubemap
 from .deep_cubemap.inspection import inspect_deep_cubemap
 from .device_scene.device_scene import DeviceScene
 from .film.film import Film
-from .learning import Learning, may_share_world_light
+from .learning import Learning
 from .memory import Memory, compute_memory
-from .pilot_view import view_pilot
+from .pilot_view import pilot_footprints
 from .stage_set import StageSet
 from .state import RenderState, read_state, restore_state
 
@@ -68,8 +67,7 @@ class ProgressivePhotonMapper:
         if demands.traces_rays:
             self.device_scene.resolve.expect_rays(demands.casts_rays)
         context = self.device_scene.context
-        pilot = view_pilot(context, self.stages, follows_rays=may_share_world_light(context))
-        self._learning = Learning(context, pilot)
+        self._learning = Learning(context, pilot_footprints(context, self.stages))
         self.build_seconds = time.perf_counter() - start
 
     def _begin(self, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> None:
@@ -104,12 +102,10 @@ class ProgressivePhotonMapper:
             self.learning.learn(self.device_scene.context, self.iteration - 1)
         seed, shadow_rays = self.scene.settings.seed, self._demands.shadow_rays
         weighs_noise = self.learning.weighs_noise and learns_after(self.iteration)
-        iteration = Iteration(self.iteration, seed, photons, self._skipped, 0.0, shadow_rays, weighs_noise)
+        iteration = Iteration(self.iteration, seed, photons, self._skipped, shadow_rays, weighs_noise)
         if self.device_scene.moves:
             self.device_scene.move_to(iteration)
             yield
-        direct_world_flux = self.learning.direct_world_flux(self.device_scene.lights)  # as the scene stands now
-        iteration = dataclasses.replace(iteration, direct_world_flux=direct_world_flux)
         bands = self.device_scene.motion.iterations_of_bands(self.stages.bands, iteration)
         yield from iterate(self.device_scene.context, self.stages, self.learning, iteration, bands)
         self.context.refuse_lost_memory()

@@ -65,13 +65,6 @@ vec3 evaluate_importon(IMPORTON, vec3 wi, bool front, float geometric_cosine, bv
     return value;
 }
 
-// MIS weight of a photon that brings direct light: rays bring the rest, if they bring any.
-float direct_mis_weight(uint photon_number, float radius) {
-    if (!(iteration.direct_world_flux > 0.0)) return 1.0;
-    PhotonOrigin world = photon_origins[photon_path_of(photons[photon_number].path)];
-    return photon_mis_weight(world.radiance, world.pdf, iteration.direct_world_flux, radius);
-}
-
 // MIS weight of a photon that brings a caustic to the origin of a final gather, whose ray brings the rest unless the
 // path ends before. It brings nothing that media have scattered.
 float caustic_mis_weight(uint photon_number, uint importon_history, float radius) {
@@ -170,10 +163,9 @@ bool density_estimate(IMPORTON, uint counts, uint photon_number, out Estimate es
     if ((flags & PHOTON_AFTER_ROUGH_BOUNCE) != 0u) kernel *= photon_factor(ITS.gathers);
     radiance = radiance * flux * kernel;
     estimate.diffuse = estimate.diffuse * flux * kernel;
-    float mis_weight = 1.0, disk = disk_radius(ITS.minimum_radius, ITS.radius);
-    if ((flags & PHOTON_DIRECT) != 0u) mis_weight = direct_mis_weight(photon_number, disk);
-    else if ((ITS.gathers & FINAL_GATHER_ORIGIN) != 0u)
-        mis_weight = caustic_mis_weight(photon_number, ITS.history, disk);
+    float mis_weight = 1.0;
+    if ((flags & PHOTON_DIRECT) == 0u && (ITS.gathers & FINAL_GATHER_ORIGIN) != 0u)
+        mis_weight = caustic_mis_weight(photon_number, ITS.history, disk_radius(ITS.minimum_radius, ITS.radius));
     estimate.radiance = radiance * mis_weight;
     estimate.diffuse *= mis_weight;
     return largest(estimate.radiance) > 0.0;

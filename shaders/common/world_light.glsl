@@ -8,13 +8,3 @@
 float photon_power_heuristic(float radiance, float photon_flux, float radius) {
     return power_heuristic(radiance, photon_flux / (PI * PI * radius * radius));
 }
-
-// Pdf of shadow rays, 1/sr, above which lights cast sharp shadows. Photons would blur these, and leave them to rays.
-const float SHARP_PDF = 10.0;
-
-// MIS weight of photons that bring direct light of the environment, because rays seldom leave the scene.
-// photon_flux: of the environment's photons, W. pdf: of shadow rays in the photon's direction, 1/sr.
-float photon_mis_weight(float radiance, float pdf, float photon_flux, float radius) {
-    float sharpness = pdf / SHARP_PDF;
-    return photon_power_heuristic(radiance, photon_flux, radius) / (1.0 + sharpness * sharpness);
-}

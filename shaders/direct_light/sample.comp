@@ -32,8 +32,7 @@ readonly buffer CameraPaths;
 writeonly buffer ShadowRays;
 writeonly buffer LightTriangles;
 writeonly buffer Contributions;
-readonly buffer RadiusFactors;
-#include "camera_paths/importons/radius.glsl"
+#include "camera_paths/importons/final_gather.glsl"
 writeonly buffer LightSplits;
 #include "camera_paths/last_vertex.glsl"
 #include EMITTERS "lights/one_level/hits.glsl"
@@ -65,13 +64,11 @@ bool can_be_lit(uint index, Closure closure, bool gathered) {
 // are followed to all lights with extent: the power heuristic weights both ways, part by part of the closure.
 // What specular lobes reflect after a gathering ray is the business of the photons where that ray began.
 // Times the cosine, of each part its own. front: the light is on the geometric normal's side. light_pdf: in 1/sr, the
-// choice of the light included. is_shared: whether gathering rays find the light. by_rays: what photons leave to rays,
-// of the parts that store them.
+// choice of the light included. is_shared: whether gathering rays find the light.
 vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelection lobes, bool gathered, vec3 wo,
-                      vec3 wi, bool front, uint visibility, bool is_shared, float light_pdf, float by_rays,
-                      out Parts parts) {
+                      vec3 wi, bool front, uint visibility, bool is_shared, float light_pdf, out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
-    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? by_rays * diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
+    vec3 value = (visibility & RAY_DIFFUSE) != 0u ? diffuse_scattered(closure, wo, wi, front) : vec3(0.0);
     if (is_shared) {
         float cosine = abs(dot(unpack_unit_vector(closure.diffuse_normal), wi));
         float part = largest(throughput * (front ? closure.diffuse : closure.translucent));
@@ -85,7 +82,7 @@ vec3 evaluate_closure(uint index, Closure closure, vec3 throughput, LobeSelectio
         if (!lobe_is_lit(lobe, gathered) || !lobe_faces(lobe, cosine, front)) continue;
         LobeValue scattered = lobe_value(lobe, normal, wo, wi);
         bool specular = lobe_is_specular(lobe, iteration.specular_alpha);
-        float weight = specular ? 1.0 : by_rays;
+        float weight = 1.0;
         if (light_pdf > 0.0 && (specular || (is_shared && lobe.alpha > MIN_MIS_ALPHA)))
             weight *= power_heuristic(light_pdf,
                                       selection_probability((specular ? lobes.specular : lobes.stored)[1 + k], lobes)
@@ -179,25 +176,9 @@ void set_shadow_media(uint index, uint flags) {
 #endif
 }
 
-// Of photons that bring the environment's direct light.
-float direct_radius(uint index, CameraPath path, Closure closure, vec3 wo) {
-    PhotonRadii radii = photon_radii(index, path, -wo, closure);
-    return disk_radius(radii.minimum, radii.maximum);
-}
-
-// What they leave to rays along a direction.
-float left_to_rays(vec3 point, vec3 direction, float radius) {
-    if (!(iteration.direct_world_flux > 0.0)) return 1.0;
-#ifdef PORTALS
-    if (view_portals(point, direction, NO_PORTAL).pdf > 0.0) return 1.0;
-#endif
-    return 1.0 - direct_photon_mis_weight(world_radiance(direction), world_shadow_ray_pdf(direction), radius);
-}
-
 // Of a light that is chosen by what it may give at the point.
-Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure closure, vec3 throughput,
-                             LobeSelection lobes, vec3 wo, bool gathered, bool gathers, uvec4 choices,
-                             out Parts parts) {
+Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, LobeSelection lobes,
+                             vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
     parts = Parts(vec3(0.0), vec3(0.0));
     if (!can_be_lit(index, closure, gathered)) return NOTHING_ARRIVES;
     // Of the light, then of a light deep in the tree, and of the point on the light: even together.
@@ -215,15 +196,14 @@ Arriving arriving_from_light(uint index, CameraPath path, float radius, Closure 
                    && sampled.triangle != hit_emitter(closure.triangle) && side != 0.0;
     if (!arrives) return NOTHING_ARRIVES;
     bool environment = light.kind == LIGHT_WORLD;
-    // Of the environment, photons have to know the density as well, for which the choice at the point is none.
+    // Gathering rays that leave the scene know of no choice at the point.
     float light_pdf = sampled.pdf * (environment ? light.selection_probability : choice.probability);
     bool is_plain = sampled.triangle == NO_EMITTER || emitter_link(sampled.triangle) == 0u;
     bool leaves = (dot(unpack_unit_vector(closure.geometric_normal), sampled.direction) > 0.0) == (side > 0.0);
     bool is_shared = gathers && leaves && light_pdf > 0.0
                      && (environment || (!gathered && is_plain && is_shared_light(light, bounces_of(path.depth))));
-    float by_rays = environment ? left_to_rays(closure.position, sampled.direction, radius) : 1.0;
     vec3 scattered = evaluate_closure(index, closure, throughput, lobes, gathered, wo, sampled.direction, side > 0.0,
-                                      light.flags, is_shared, light_pdf, by_rays, parts);
+                                      light.flags, is_shared, light_pdf, parts);
     parts = Parts(fraction_of(parts.glossy, scattered), fraction_of(parts.transmission, scattered));
     uint beyond = path.flags;
     if (side <= 0.0) beyond = cross_surface(beyond, closure.material, closure_backfacing(closure));
@@ -271,8 +251,8 @@ void main() {
     LobeSelection lobes =
         select_lobes(index, closure, throughput, viewer, gathers, (flags & PATH_CAMERA_TRANSPARENT) != 0u);
     Parts parts;  // shares of it
-    Arriving arriving = arriving_from_light(index, path, direct_radius(index, path, closure, viewer), closure,
-                                            throughput, lobes, viewer, gathered, gathers, choices, parts);
+    Arriving arriving =
+        arriving_from_light(index, path, closure, throughput, lobes, viewer, gathered, gathers, choices, parts);
     Arriving reflected = NOTHING_ARRIVES;
     if (!gathered) reflected = arriving_reflected(index, closure, throughput, lobes, viewer, flags, choices);
     // One ray for both: by what they would add.

@@ -54,14 +54,6 @@ vec3 radiant_strength(Light light, vec3 direction) {
 // In 1/sr, of shadow rays to the environment where no portals face the point.
 float world_shadow_ray_pdf(vec3 direction) { return iteration.world_selection * world_pdf(direction); }
 
-// MIS weight of photons that bring direct light of the environment to an importon with this radius; rays bring the
-// rest.
-// shadow_ray_pdf: world_shadow_ray_pdf.
-float direct_photon_mis_weight(vec3 radiance, float shadow_ray_pdf, float radius) {
-    if (!(iteration.direct_world_flux > 0.0)) return 0.0;
-    return photon_mis_weight(largest(radiance), shadow_ray_pdf, iteration.direct_world_flux, radius);
-}
-
 // By its selection probability.
 uint choose_light(float u) {
     uint low = 0u, high = iteration.light_count - 1u;

@@ -4,7 +4,6 @@
 
 #include "common/iteration.glsl"
 const uint NO_PORTAL = 0xffffffffu;
-const float ONLY_SHADOW_RAYS = 1e15;  // of direct_photon_mis_weight: leaves nothing to photons
 
 Light portal_at(uint portal) { return lights[iteration.light_count + portal]; }
 

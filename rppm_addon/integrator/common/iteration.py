@@ -23,9 +23,6 @@ class Iteration:
     """Photons that leave the lights; none for the pilot view."""
     skipped: int = 0
     """Number of iterations before the first one of the film."""
-    direct_world_flux: float = 0.0
-    """Flux of a photon of the world that contributes, W, where both photons and rays bring the world's direct light;
-    else 0."""
     shadow_rays: int = 1
     """Shadow rays of each vertex of a camera path."""
     weighs_noise: bool = False

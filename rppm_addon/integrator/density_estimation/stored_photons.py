@@ -2,7 +2,6 @@
 """Input of density estimation: the stored photons of an iteration, and the importons that take of them."""
 
 import dataclasses
-import enum
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -10,7 +9,6 @@ import moderngl
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
-from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.bindings import ITERATION
@@ -21,17 +19,6 @@ from ..common.stage_sizes import StageSizes, photon_slots
 from .radii import SplatRadii
 
 Record("StoredParameters", count="uint", takes_direct="uint")
-
-
-class DirectPhotons(enum.IntEnum):
-    """The photons straight from lights that are listed."""
-
-    NONE = 0
-    OF_WORLD = 1
-    ALL = 2
-
-
-Constants("DirectPhotons", DIRECT=DirectPhotons)
 
 
 class PhotonList(BufferSet):
@@ -58,18 +45,18 @@ class PhotonList(BufferSet):
         self,
         blocks: Mapping[str, Bindable],
         slots: int,
-        takes_direct: DirectPhotons,
+        takes_direct: bool,
     ) -> None:
-        """List the photons that are stored, straight from lights only as ``takes_direct`` says.
+        """List the photons that are stored, with those straight from lights where ``takes_direct``.
 
-        blocks: Photons, PhotonRange and PhotonOrigins, of no more than so many slots.
+        blocks: Photons and PhotonRange, of no more than so many slots.
         """
         self._numbers.require_items(slots)
         self._numbers.write(np.zeros(3, np.uint32))
         self._program.run(
             slots,
             {**blocks, **self.blocks},
-            {"count": slots, "takes_direct": takes_direct.value},
+            {"count": slots, "takes_direct": takes_direct},
         )
         self.count, self.global_photon_count, self.indirect_count = map(int, self._numbers.read(np.uint32, 3))
 

@@ -39,7 +39,6 @@ ITERATION_PARAMETERS = Record(
     seed="uint",
     **LIGHT_PARAMETERS,
     world_group="uint",
-    direct_world_flux="float",
     photon_flux="float",
     limits_bounces="uint",
     **_SETTINGS,
@@ -54,7 +53,7 @@ ITERATION_PARAMETERS = Record(
 )
 """Members of the uniform block Iteration (shaders/common/iteration.glsl).
 
-``number``, ``number_in_film``, ``seed`` and ``direct_world_flux`` are those of Iteration. ``photon_flux`` is the mean
+``number``, ``number_in_film`` and ``seed`` are those of Iteration. ``photon_flux`` is the mean
 flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
 shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, or members that the
 lights and the radii declare. ``most_transparent`` is how much a surface may transmit that passes show.
@@ -85,7 +84,6 @@ class IterationBlock(BufferSet):
             "number_in_film": iteration.number_in_film,
             "seed": iteration.seed,
             "world_group": lights.world_group,
-            "direct_world_flux": iteration.direct_world_flux,
             "photon_flux": lights.photon_flux,
             "limits_bounces": lights.limits_bounces,
             **{name: getattr(settings, name) for name in _SETTINGS},

@@ -103,8 +103,6 @@ class Guide(BufferSet):
         self._probabilities: list[np.ndarray] = []
         self.learned: np.ndarray | None = None
         """(cells, 2) uint32: the tallies by which cells are chosen; None while they are chosen evenly."""
-        self.gains = np.ones(0)
-        """(lights,) how many times as many of a light's photons contribute as if they left evenly."""
         self.even_contribution = np.ones(0)
         """(lights,) the fraction that would contribute if they left evenly."""
 
@@ -120,7 +118,6 @@ class Guide(BufferSet):
         lights["first_cell"] = np.concatenate([[0], np.cumsum(counts)[:-1]])
         self._choose_by([np.full(count, 1.0 / count) for count in counts])
         self.learned = None
-        self.gains = np.ones(len(lights))
         self._tallies.upload(np.zeros((counts.sum(), 2), np.uint32))
         self._photon_cells.require_items(photons)
 
@@ -175,7 +172,5 @@ class Guide(BufferSet):
             estimates.append(contribution_probability(part[..., 0], part[..., 1]).ravel())
             first += count
         self._choose_by([probabilities(estimate) for estimate in estimates])
-        even = np.array([estimate.mean() for estimate in estimates])
-        self.gains = np.array([now @ estimate for now, estimate in zip(self._probabilities, estimates)]) / even
-        self.even_contribution = even
+        self.even_contribution = np.array([estimate.mean() for estimate in estimates])
         return np.array([np.sqrt(estimate).mean() for estimate in estimates]), estimates

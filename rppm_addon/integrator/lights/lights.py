@@ -57,7 +57,7 @@ LIGHT_PARAMETERS = {
 """Parameters of every program that includes shaders/lights/lights.glsl. ``gathers_lights``: whether gathering rays
 find lights that shadow rays find as well (shadows_are_of_all); ``world_selection`` is the probability of choosing the
 world for direct light, as MIS weights take it; ``mesh_light`` and ``world_light`` are the numbers of lights;
-``environment_irradiance`` what the world may give, W/m^2, ``direct_world_flux`` Iteration's, ``links_lights``
+``environment_irradiance`` what the world may give, W/m^2, ``links_lights``
 Lights', ``world_visibility`` the rays that see the world, ``world_bounces`` its max_bounces."""
 
 
@@ -323,12 +323,3 @@ class Lights(BufferSet):
     def photon_flux(self) -> float:
         """Mean flux of the iteration's photons as they leave their lights, W, the channels' mean."""
         return sum(self._list.powers) / require(self._allocation).photon_count
-
-    @property
-    def world_photon_flux(self) -> float:
-        """Mean flux of those of the world's photons that contribute, W, the channels' mean; 0 where there are none."""
-        worlds = np.flatnonzero((self.table["kind"] == LightShape.WORLD) & (self.table["photon_count"] > 0))
-        return sum(
-            self._list.powers[index] / int(self.table["photon_count"][index]) / float(self.guide.gains[index])
-            for index in worlds
-        )

@@ -13,7 +13,7 @@ import numpy as np
 from ...scene.lights import Light, LightKind
 from .environment import Environment
 from .light_entry import light_entry
-from .light_records import LIGHT, LightShape
+from .light_records import LIGHT
 
 PORTAL_PARAMETERS = {
     "portal_count": "uint",
@@ -147,23 +147,6 @@ def power_through(passed: np.ndarray, radiance: float) -> float:
     """W of what light_through says, times a radiance."""
     rows, columns = passed.shape
     return float(radiance * (passed * _sines(rows)[:, None]).sum() * 2.0 * np.pi**2 / (rows * columns))
-
-
-def passes_portal(portals: np.ndarray, origins: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """(n,) whether rays (n, 3) leave through one of the portals, LIGHT records."""
-    passes = np.zeros(len(origins), bool)
-    for portal in portals:
-        normal, u, v = (portal[name].astype(np.float64) for name in ("normal", "axis_u", "axis_v"))
-        offset = origins - portal["position"]
-        height, leaving = offset @ normal, -(directions @ normal)
-        faces = (height > 0.0) & (leaving > 0.0)
-        place = offset + (height / np.where(faces, leaving, 1.0))[:, None] * directions
-        uu, uv, vv = u @ u, u @ v, v @ v
-        pu, pv = place @ u, place @ v
-        at = np.stack([pu * vv - pv * uv, pv * uu - pu * uv], -1) / max(uu * vv - uv * uv, 1e-300)
-        size = np.linalg.norm(at, axis=1) if portal["kind"] == LightShape.ELLIPSE else np.abs(at).max(axis=1)
-        passes |= faces & (size <= 1.0)
-    return passes
 
 
 def _sines(rows: int) -> np.ndarray:

@@ -47,8 +47,3 @@ class PhotonEmission:
         """End photons at first hits from which their point on a soft light is occluded."""
         program = self._library.compute("photons/photon_emission/cut.comp", context.acceleration.traversal_defines)
         active.run(program, {**context.blocks, **photons})
-
-    def leave_to_shadow_rays(self, context: StageContext, photons: Mapping[str, Bindable], active: ActivePaths) -> None:
-        """Mark direct photons that came through a portal: shadow rays bring their light."""
-        program = self._library.compute("photons/photon_emission/portal_passed.comp", {"PORTALS": 1})
-        active.run(program, {**context.blocks, **photons})

@@ -21,7 +21,7 @@ from ..common.records.rays import HIT, RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, photon_paths, photon_slots
 from ..density_estimation.radii import EXPECTED_CAUSTIC_PHOTONS, Radii
-from ..density_estimation.stored_photons import DirectPhotons, PhotonList, StoredPhotons
+from ..density_estimation.stored_photons import PhotonList, StoredPhotons
 from ..device_scene.stage_context import StageContext
 from .first_hits import FirstHits
 from .photon_emission import PhotonEmission
@@ -169,8 +169,6 @@ class Photons(Stage):
         """Store photons, and send them on with the flux that a viewer would see from where they go."""
         has_adjoint_queries = context.materials.any_depends_on_view
         with context.timers.stage("photon scattering"):
-            if iteration.direct_world_flux > 0.0 and len(context.lights.portals.records):
-                self._emission.leave_to_shadow_rays(context, self.blocks, self._active)
             self._active.run(
                 self._scatter,
                 {**context.blocks, **self.blocks},
@@ -194,10 +192,8 @@ class Photons(Stage):
 
     def list_stored(self, context: StageContext, listed: PhotonList, iteration: Iteration) -> PhotonList:
         """List the photons that importons may take. Where shadow rays find direct light, direct ones would count it
-        twice, but for the part of the world's that is left to them."""
-        takes_direct = DirectPhotons.OF_WORLD if iteration.direct_world_flux > 0.0 else DirectPhotons.NONE
-        if context.settings.direct_light is DirectLight.PHOTONS:
-            takes_direct = DirectPhotons.ALL
+        twice."""
+        takes_direct = context.settings.direct_light is DirectLight.PHOTONS
         with context.timers.stage("photon list"):
             listed.collect(self.blocks, self.slots, takes_direct)
         return listed

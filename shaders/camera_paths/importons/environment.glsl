@@ -5,7 +5,7 @@
 // Sampling of the environment by shadow rays from the origin of a ray, in the ray's direction.
 struct EnvironmentSampling {
     float pdf;          // 1/sr, 0 where rays alone bring the environment
-    float nominal_pdf;  // 1/sr, by which photons are weighted: it depends on no place
+    float nominal_pdf;  // 1/sr, without portals and for an uneven environment
     bool is_reused;     // whether neighboring pixels reuse the radiance
 };
 
@@ -19,10 +19,7 @@ EnvironmentSampling environment_sampling(vec3 position, vec3 direction) {
 #ifdef PORTALS
     PortalView portals = view_portals(position, direction, NO_PORTAL);
     if (portals.solid_angle > 0.0) sampling.pdf = iteration.world_selection * mixed_world_pdf(portals, direction);
-    if (portals.pdf > 0.0) {
-        sampling.nominal_pdf = ONLY_SHADOW_RAYS;
-        sampling.is_reused = false;
-    }
+    if (portals.pdf > 0.0) sampling.is_reused = false;
 #endif
     return sampling;
 }
@@ -47,8 +44,7 @@ vec4 background_radiance(CameraPath path, vec3 environment, float shadow_ray_pdf
 }
 
 #ifdef MEDIA
-// The environment at the end of a ray that a medium has scattered, which shadow rays from there bring as well, but for
-// what photons bring straight to there.
+// The environment at the end of a ray that a medium has scattered, which shadow rays from there bring as well.
 void gather_environment_in_medium(PathSegment segment, vec3 environment, float shadow_ray_pdf) {
     CameraPath path = segment.path;
     if ((path.flags & PATH_CAUSTIC) != 0u || !(path.scatter_pdf > 0.0)) return;
@@ -61,8 +57,8 @@ void gather_environment_in_medium(PathSegment segment, vec3 environment, float s
 }
 #endif
 
-// The environment at the end of a final gather's ray is direct light at its origin, which shadow rays and photons bring
-// as well, or a caustic there, which photons bring as well. Each technique has its MIS weight.
+// The environment at the end of a final gather's ray is direct light at its origin, which shadow rays bring as well, or
+// a caustic there, which photons bring as well. Each technique has its MIS weight.
 void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampling sampling) {
     uint index = segment.index;
     CameraPath path = segment.path;
@@ -79,7 +75,6 @@ void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampli
     if ((path.flags & PATH_CAUSTIC) == 0u) {
         if (iteration.next_event == 0u) return;
         vec3 direct = path.throughput * environment * scatter_mis_weight(path.scatter_pdf, sampling.pdf);
-        direct *= 1.0 - direct_photon_mis_weight(environment, sampling.nominal_pdf, path.photon_radius);
         bool is_reused = is_secondary_gather(path) || sampling.is_reused;
         if (is_reused) final_gather_hits[index].radiance += direct;
         else radiances[index].rgb += clamped_light(final_gather_origins[index].weight * direct, 0u);

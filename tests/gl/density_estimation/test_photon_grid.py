@@ -16,7 +16,6 @@ from rppm_addon.integrator.density_estimation.photon_grid import PhotonGrid
 from rppm_addon.integrator.density_estimation.radii import SplatRadii
 from rppm_addon.integrator.density_estimation.splat_sums import SplatSums
 from rppm_addon.integrator.density_estimation.stored_photons import (
-    DirectPhotons,
     PhotonList,
     SplatTargets,
     StoredPhotons,
@@ -47,7 +46,7 @@ class Device:
         sizes = StageSizes(len(importons), 1, photons=len(photons), photon_segments=1)
         listed = PhotonList(self._context, self._library, sizes)
         blocks = dict(zip(("Photons", "PhotonOrigins", "PhotonRange"), (b.buffer for b in (buffers[0], *buffers[2:4]))))
-        listed.collect(blocks, len(photons), DirectPhotons.ALL)
+        listed.collect(blocks, len(photons), takes_direct=True)
         sums = SplatSums(self._context, self._library, sizes)
         sums.count_in(1e-6, 0, 1)
         sums.clear()

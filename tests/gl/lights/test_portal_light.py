@@ -112,10 +112,9 @@ def test_photons_through_portals_emit_the_same_light(mapper, name, sky):
 
 
 def test_the_floor_gets_the_sky_through_a_portal(mapper):
-    """By shadow rays, to the closed form, where photons alone are off by their radius."""
+    """By shadow rays, to the closed form."""
     scene = with_portals("in the hole")
     pictures = picture_by_seed(mapper, "portal", scene, 8)
-    assert mapper.learning.direct_world_flux(mapper.device_scene.lights) == 0.0
     expected = FLOOR * hole_form_factor(scene)[..., None]
     assert pictures.mean() == pytest.approx(expected.mean(), rel=5e-3)
     # Without portals the same pictures have five times as much noise.
@@ -125,26 +124,25 @@ def test_the_floor_gets_the_sky_through_a_portal(mapper):
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["a part of it", "wherever"])
 def test_portals_in_wrong_places_change_no_mean(mapper, name):
-    scene = with_portals(name, iterations=8)
+    scene = with_portals(name, iterations=32, photons=1 << 10)
     pictures = picture_by_seed(mapper, f"portals {name}", scene)
-    assert mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0
     judge(f"portals {name}", pictures, FLOOR * hole_form_factor(scene)[..., None])
 
 
-@pytest.mark.parametrize("behind", ["gathering rays", "glossy rays", pytest.param("photons", marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "behind", ["gathering rays", "glossy rays", pytest.param("half a hole", marks=pytest.mark.long)]
+)
 def test_panes_without_shadow_behind_portals_change_nothing(mapper, behind):
     """Light that goes straight through a pane is weighted by how shadow rays find it from where it was scattered."""
     scene, low, seeds = with_portals("in the hole", iterations=2), -0.4, 2
     if behind == "glossy rays":
         scene.materials[0] = material("floor", Lobe(LobeKind.GLOSSY, roughness=0.2, color=FLOOR))
         scene.settings = scene.settings.with_values(use_final_gather=False, specular_roughness=0.3)
-    elif behind == "photons":  # half of the hole is left to them
+    elif behind == "half a hole":  # gathering rays find the light of the other half
         half = dataclasses.replace(portal(x=0.5 * HOLE, shape="RECTANGLE"), size=(HOLE, 2 * HOLE))
         scene, low, seeds = dataclasses.replace(with_portals("in the hole"), lights=[half]), 0.0, 4
     plain = picture_by_seed(mapper, f"pane {behind}", scene, seeds).mean(axis=(1, 2, 3))
-    assert (mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0) == (behind == "photons")
     seen_through = picture_by_seed(mapper, f"pane {behind}", with_pane(scene, low, HEIGHT + 1e-3), seeds)
-    assert (mapper.learning.direct_world_flux(mapper.device_scene.lights) > 0.0) == (behind == "photons")
     change = seen_through.mean(axis=(1, 2, 3)) / plain - 1.0
     assert abs(change.mean()) < 5 * change.std(ddof=1) / math.sqrt(seeds) + 1e-3
 

@@ -26,11 +26,10 @@ of vertices in media, with FIRST_MEDIUM_LIT and HIDDEN_FROM_MEDIA."""
 StorageBlock("PhotonPaths", "PhotonPath photon_paths[];")
 StorageBlock("Emitted", "PhotonPath emitted[];")
 """Paths as they left their lights."""
-PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", pdf="float", max_bounces="uint", light_group="uint")
-"""The world where a photon comes from: its radiance, W/(m^2 sr), the largest channel; the pdf of shadow rays that way
-from where no gathering ray stands for them, 1/sr; both 0 for photons of other lights. And the light's ``max_bounces``:
-how often what it lights may have scattered on the way to the camera; and the number of its ``light_group``, where
-these have passes."""
+PHOTON_ORIGIN = Record("PhotonOrigin", radiance="float", max_bounces="uint", light_group="uint")
+"""The radiance of the world where a photon comes from, W/(m^2 sr), the largest channel; 0 for photons of other lights.
+And the light's ``max_bounces``: how often what it lights may have scattered on the way to the camera; and the number of
+its ``light_group``, where these have passes."""
 StorageBlock("PhotonOrigins", "PhotonOrigin photon_origins[];")
 DEPTH_BITS = 11
 """Bits of the number of bounces in a depth, and of that of transparent surfaces above it."""

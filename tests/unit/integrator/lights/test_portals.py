@@ -49,16 +49,6 @@ def test_a_sun_goes_on_at_the_seam():
     assert passed[-2, [-1, 0, 1]] == pytest.approx(2.0 * np.array([6.0, 36.0, 6.0]), rel=0.01)
 
 
-def test_rays_through_portals():
-    """From below and through the shape; not from above, beside it, nor down."""
-    ellipse, rectangle = (portals.portal_entries([portal(shape)], 1.0) for shape in ("ELLIPSE", "RECTANGLE"))
-    origins = np.array([[0, 0, 0], [0.9, 0.4, 0.5], [1.5, 0, 0], [0, 0, 2], [0, 0, 0], [0, 0, 0]], float)
-    directions = np.array([[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, -1], [0.6, 0, 0.8]], float)
-    assert portals.passes_portal(rectangle, origins, directions).tolist() == [True, True, False, False, False, True]
-    assert portals.passes_portal(ellipse, origins, directions).tolist() == [True, False, False, False, False, True]
-    assert not portals.passes_portal(rectangle[:0], origins, directions).any()
-
-
 def test_bright_spots_have_shadow_rays_of_their_own():
     sky = np.ones((32, 64))
     sun = sky.copy()
