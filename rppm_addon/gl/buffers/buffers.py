@@ -28,7 +28,7 @@ def refuse_large_block(
     """
     limit = context.storage_block_limit if limit is None else limit
     if size > limit:
-        room = f", room for {limit // item_size:,} of {size // item_size:,}," if item_size > 1 else ""
+        room = f" ({limit // item_size:,} of {size // item_size:,} items)" if item_size > 1 else ""
         raise DeviceError(
             f"{name} needs {size / 2**20:.0f} MiB but the device {context.information.name} "
             f"allows {limit / 2**20:.0f} MiB{room} in one buffer; {remedy}"

@@ -200,7 +200,7 @@ def test_a_gpu_denoises_where_the_library_knows_one(fake_gpu, tmp_path):
 def test_a_gpu_without_memory_gets_its_buffers_back(fake_gpu, tmp_path):
     """Otherwise each failure would leave less of it, which the renderer needs as well."""
     library = OpenImageDenoise(tmp_path / "library.so", use_gpu=True)
-    fake_gpu.functions["oidnGetDeviceError"].function = lambda *_: len(fake_gpu.buffers) > 1
+    fake_gpu.results["oidnGetDeviceError"] = lambda *_: len(fake_gpu.buffers) > 1
     with pytest.raises(DenoiserError, match="too little memory on its device"):
         library.filter({"color": np.ones((2, 3, 3))}, DenoisingQuality.HIGH)
     assert fake_gpu.buffers[0] is None
