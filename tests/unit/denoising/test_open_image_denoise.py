@@ -144,8 +144,7 @@ class FakeLibrary:
         self.qualities.append(value)
 
     def __getattr__(self, name):
-        answer = self.results.get(name, lambda *_: 0)
-        return self.functions.setdefault(name, lambda *given: answer(*given))
+        return self.functions.setdefault(name, lambda *given: self.results.get(name, lambda *_: 0)(*given))
 
 
 class FakeGpu(FakeLibrary):
