@@ -51,3 +51,7 @@ for number in range(across * across):
     thing.scale = (0.08, 0.08, 0.08)
     bpy.context.scene.collection.objects.link(thing)
 save("many")
+
+# Blender's startup file, as an artist begins.
+bpy.ops.wm.read_homefile(app_template="", use_factory_startup_app_template_only=True)
+save("startup")

@@ -285,6 +285,30 @@ def engine_busy() -> dict[str, list[float]]:
     return {name: [busy for _, busy in calls] for name, calls in _calls.items()}
 
 
+# Samples that a viewport shows.
+
+_samples: list[tuple[float, int]] = []
+
+
+def count_samples() -> None:
+    """From now on note how many samples the pictures have that a viewport of RPPM draws."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
+    viewports = importlib.import_module(f"{engine.__module__.rsplit('.', 1)[0]}.viewport")
+    draw = viewports.Viewport.draw
+    _samples.clear()
+
+    def counted(self, *arguments):
+        draw(self, *arguments)
+        _samples.append((time.perf_counter(), self._session.status.iteration))
+
+    viewports.Viewport.draw = counted
+
+
+def sampled() -> float | None:
+    """When a viewport first showed samples, since count_samples(); None while it shows none."""
+    return next((when for when, samples in _samples if samples > 0), None)
+
+
 # Exports in slices.
 
 _slices: list[list[int] | None] = []
