@@ -109,8 +109,7 @@ void main() {
             (path_flags & ~(PHOTON_DIRECT | PHOTON_CASTS_SHADOWS)) | PHOTON_AFTER_ROUGH_BOUNCE | PHOTON_INDIRECT;
 #endif
     photon_origins[index] = PhotonOrigin(0.0, light.max_bounces, NO_LIGHT_GROUP);
-    if (light.kind == LIGHT_WORLD)
-        photon_origins[index].radiance = largest(world_radiance(-emission.direction));
+    if (light.kind == LIGHT_WORLD) photon_origins[index].radiance = largest(world_radiance(-emission.direction));
     photon_paths[index] = PhotonPath(dark ? vec3(0.0) : flux, path_flags, 0u, 0.0, 0.0,
                                      is_hidden_from_media(light, emission) ? HIDDEN_FROM_MEDIA : 0u);
     vec3 left_from = emission.origin;
