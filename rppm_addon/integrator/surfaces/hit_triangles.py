@@ -29,8 +29,9 @@ _PATHS = {
 
 
 def expected_hit_bytes(sizes: StageSizes) -> dict[str, int]:
-    """Bytes by buffer that the hits of a scene of these sizes take on instances that are not expanded."""
-    count = sum(next_range(2 * size(sizes)) for size in _PATHS.values())
+    """Bytes by buffer that the hits of a scene of these sizes take on instances that are not expanded, where none of
+    these emits light."""
+    count = sum(next_range(2 * size(sizes)) for paths, size in _PATHS.items() if paths is not HitPaths.LIGHT)
     of_each = {
         "hit origins": 8,
         "world triangles": TRIANGLE_VERTICES.size,

@@ -37,6 +37,7 @@ def test_panels_name_what_the_addon_adds_and_offer_to_enable_it(without_cycles):
     }
     expected = {
         "RPPM_PT_light": "Portal, Max Bounces",
+        "RPPM_PT_motion_blur": "Rolling Shutter",
         "RPPM_PT_curves": "Shape, Curve Subdivisions",
         "RPPM_PT_subdivision": "Dicing Rate",
         "RPPM_PT_object_motion_blur": "Motion Blur, Steps, Deformation",

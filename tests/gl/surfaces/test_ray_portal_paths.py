@@ -191,12 +191,16 @@ def test_the_sky_through_windows_lights_a_floor(mapper):
 
 @pytest.mark.parametrize("direct_light", list(DirectLight))
 def test_windows_cast_shadows(mapper, direct_light):
-    """Neither shadow rays nor photons go through."""
-    floor = scenes.square("floor", 3.0, -1.0)
+    """Neither shadow rays nor photons go through, as they do where the window is clear."""
+    camera = scenes.camera((0.0, -2.5, -0.5), (0.0, -1.0, -1.0), 0.05, 8)
     lamp = Light("lamp", LightKind.POINT, scenes.placed(0.0, 0.0, 3.0), np.full(3, 10.0))
-    camera = scenes.camera((0.0, -2.5, -0.5), (0.0, 0.0, -1.0), 0.1, 8)
-    parts = (floor, scenes.diffuse(0.8, 0.8, 0.8)), (scenes.square("window", 1.5), portal(way=None))
-    scene = scenes.scene_of(camera, *parts, lights=[lamp], photons=2048, direct_light=direct_light)
-    assert radiance_of(mapper, scene, 4)[..., :3].max() == 0.0
-    scene.materials[1] = material("clear", Lobe(LobeKind.TRANSPARENT, color=(1.0, 1.0, 1.0)))
-    assert radiance_of(mapper, scene, 4)[..., :3].min() > 0.1
+
+    def seen(*windows: Material) -> np.ndarray:
+        parts = [(scenes.square("floor", 3.0, -1.0), scenes.diffuse(0.8, 0.8, 0.8))]
+        parts += [(scenes.square("window", 1.5), window) for window in windows]
+        scene = scenes.scene_of(camera, *parts, lights=[lamp], photons=1 << 16, direct_light=direct_light)
+        return radiance_of(mapper, scene, 4)[..., :3]
+
+    clear = material("clear", Lobe(LobeKind.TRANSPARENT, color=(1.0, 1.0, 1.0)))
+    assert seen(portal(way=None)).max() == 0.0
+    np.testing.assert_allclose(seen(clear).mean(), seen().mean(), rtol=0.03)

@@ -19,7 +19,7 @@ BL_IDNAMES = {
     "bsdf_glossy": "ShaderNodeBsdfAnisotropic",
 }
 SOCKETS = {"RGBA": COLOR, "VALUE": FLOAT, "VECTOR": VECTOR}
-IMPLICIT = {"normal", "tangent"}
+IMPLICIT = {"normal", "position", "tangent"}
 
 
 def name_of(socket) -> str:
