@@ -39,7 +39,7 @@ class NodeKind:
 
     source: str
     inputs: dict[str, tuple[SocketType, Any]] = field(default_factory=dict)
-    """Type and default value by name; the value is a float, three, or "normal", "tangent" or "position" of the surface."""
+    """Type and default value by name: a float, three, or "normal", "tangent" or "position" of the surface."""
     outputs: dict[str, SocketType] = field(default_factory=dict)
     options: dict[str, tuple] = field(default_factory=dict)
     """Values that each option can take: they select code."""
