@@ -119,6 +119,7 @@ def test_the_first_pictures_of_a_file(open_blender, session_folder, name, engine
     blender.step("assign", 60.0, path="scene.render.engine", value=engine)
     blender.shrink("VIEW_3D", *WIDE)
     blender.step("plain_viewport", 60.0)
+    blender.step("camera_view", 60.0)
     blender.point_at("VIEW_3D")
     measured = switch_to_rendered(blender, engine) if engine != PLAIN else {}
     blender.screenshot(f"{Path(name).name}_{engine}_{occasion}")
