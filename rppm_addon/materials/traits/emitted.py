@@ -40,6 +40,16 @@ def reachable(graph: NodeGraph, start: Link | None) -> set[int]:
     return found
 
 
+def surface_outputs(graph: NodeGraph) -> set[tuple[str, str]]:
+    """Kinds and outputs of the nodes that know where they are shaded, as far as the graph's shader depends on these."""
+    return {
+        (graph.nodes[value.node].kind, value.output)
+        for index in reachable(graph, graph.surface)
+        for value in graph.nodes[index].inputs.values()
+        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
+    }
+
+
 def emits(graph: NodeGraph) -> Emits:
     """Whether a graph may emit light, and whether what it emits depends on place or direction."""
     nodes = reachable(graph, graph.surface)
@@ -71,16 +81,13 @@ _OUTPUTS_OF_MESH = {
 def emits_alike(graph: NodeGraph) -> bool:
     """Whether all instances of a mesh emit the same light from each of its places, as far as the nodes show: none ask
     for the object, the instance or the place in the world."""
-    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
-    asked = {
-        (graph.nodes[value.node].kind, value.output)
-        for node in nodes
-        for value in node.inputs.values()
-        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
-    }
+    asked = surface_outputs(graph)
     return all(
         kind in _OF_MESH or (kind, output) in _OUTPUTS_OF_MESH or _shades(kind) for kind, output in asked
-    ) and not any(node.kind == "tex_image" and node.options.get("projection") == "BOX" for node in nodes)
+    ) and not any(
+        graph.nodes[index].kind == "tex_image" and graph.nodes[index].options.get("projection") == "BOX"
+        for index in reachable(graph, graph.surface)
+    )
 
 
 def _shades(kind: str) -> bool:
@@ -118,12 +125,7 @@ _BY_BOTH = {"fresnel", "layer_weight"}
 def light_variation(graph: NodeGraph) -> LightVariation:
     """Return the variables on which the emission of a light's graph depends."""
     nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
-    asked = {
-        (graph.nodes[value.node].kind, value.output)
-        for node in nodes
-        for value in node.inputs.values()
-        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
-    }
+    asked = surface_outputs(graph)
     asked = {(kind, output) for kind, output in asked if kind not in _SAME_EVERYWHERE and kind != "tex_image"}
     both = any(kind in _BY_BOTH for kind, _ in asked)
     box = any(node.kind == "tex_image" and node.options.get("projection") == "BOX" for node in nodes)

@@ -13,7 +13,7 @@ from ..nodes import KINDS
 from ..nodes.volumes import PHASES
 from ..phase_functions import HENYEY_GREENSTEIN, MODELS, Parameters, PhaseModel
 from ..records import PhaseFunctionKind
-from .emitted import is_positive, reachable
+from .emitted import is_positive, reachable, surface_outputs
 
 Evaluate = Callable[[NodeGraph], np.ndarray]
 """Gives the (height, width, 3) float32 "emission" of a node graph."""
@@ -151,13 +151,7 @@ class Interior:
 
 def variation(graph: NodeGraph, reads_grids: bool = False) -> Variation:
     """Return the variables on which the volume of a graph depends. reads_grids: as for Interior.of."""
-    nodes = [graph.nodes[index] for index in reachable(graph, graph.surface)]
-    asked = {
-        (graph.nodes[value.node].kind, value.output)
-        for node in nodes
-        for value in node.inputs.values()
-        if isinstance(value, Link) and KINDS[graph.nodes[value.node].kind].surface
-    }
+    asked = surface_outputs(graph)
     return max((_variation_of(kind, output, reads_grids) for kind, output in asked), default=Variation.NOTHING)
 
 
