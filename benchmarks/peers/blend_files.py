@@ -18,7 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .environments import OUT, ROOT, describe_busy_host, run, run_job
+from .environments import OUT, ROOT, describe_busy_host, run_job
+from .files import PeersError, make_file
 from .jobs import Answer, Job
 from .methods import METHODS
 from .metrics import exposure_of, flip, mean_ratio, relative_mse
@@ -28,6 +29,7 @@ COMPARED = ("rppm", "cycles", "rppm_denoised", "cycles_denoised")
 _FOLDER = OUT / "files"
 _REFERENCE_SEEDS = (1001, 1002)
 _LIMIT = 900.0
+"""Most seconds that staging or exporting a file may take."""
 
 
 @dataclass
@@ -51,10 +53,6 @@ class Row:
     """Relative mean square error that the reference has by its noise."""
 
 
-class FileError(RuntimeError):
-    """A file cannot be compared."""
-
-
 class FileComparison:
     """Renders .blend files by both renderers and measures errors."""
 
@@ -65,14 +63,15 @@ class FileComparison:
         self._reference_samples = reference_samples
 
     def rows(self, source: Path) -> list[Row]:
-        """Results of a file. Raises FileError."""
+        """Results of a file. Raises PeersError."""
         folder = _FOLDER / f"{source.stem}_{self._resolution}"
         folder.mkdir(parents=True, exist_ok=True)
-        files = {"cycles": folder / "staged.blend", "rppm": folder / "staged.npz"}
-        self._make([sys.executable, "-m", "benchmarks.peers.adapters.staged", str(source.resolve())], files["cycles"])
-        exporting = [sys.executable, "-m", "rppm_addon", "export", str(files["cycles"]), "-o"]
-        self._make(exporting, files["rppm"], [])
-        reference, noise = self._reference(folder, files["cycles"])
+        staged, exported = folder / "staged.blend", folder / "staged.npz"
+        staging = [sys.executable, "-m", "benchmarks.peers.adapters.staged", str(source.resolve()), str(staged)]
+        make_file([*staging, self._resolution], staged, _LIMIT)
+        make_file([sys.executable, "-m", "rppm_addon", "export", str(staged), "-o", str(exported)], exported, _LIMIT)
+        files = {"cycles": staged, "rppm": exported}
+        reference, noise = self._reference(folder, staged)
         exposure = exposure_of(reference)
         rows = []
         for name in COMPARED:
@@ -84,14 +83,6 @@ class FileComparison:
                 told = mean_ratio(pixels, reference), picture.samples, answer.first_picture_seconds, noise
                 rows.append(Row(source.stem, name, picture.mark, *errors, *told))
         return rows
-
-    def _make(self, command: list[str], target: Path, more: list[str] | None = None) -> None:
-        """Make a file anew; the exporter is part of what is measured."""
-        target.unlink(missing_ok=True)
-        problem = run([*command, str(target), *([self._resolution] if more is None else more)], _LIMIT,
-                      target.with_suffix(".log"))  # fmt: skip
-        if problem or not target.exists():
-            raise FileError(f"{target} could not be made: {problem or 'no file'}")
 
     def _reference(self, folder: Path, source: Path) -> tuple[np.ndarray, float]:
         """The mean of two long runs, and the relative mean square error that it has by their noise."""
@@ -118,7 +109,7 @@ class FileComparison:
         job = Job("", str(folder), str(source), options, list(seconds), list(samples), resolution=0, seed=seed)
         answer = run_job(adapter, job)
         if answer.error or not answer.pictures:
-            raise FileError(f"no picture of {source} by {adapter}: {answer.error}")
+            raise PeersError(f"no picture of {source} by {adapter}: {answer.error}")
         return answer
 
 
@@ -186,7 +177,7 @@ def main(arguments: list[str] | None = None) -> int:
     for file in options.files:
         try:
             rows += comparison.rows(file)
-        except FileError as error:
+        except PeersError as error:
             print(f"{file.stem} is left out: {error}", file=sys.stderr, flush=True)
             continue
         (OUT / "files.json").write_text(json.dumps([dataclasses.asdict(row) for row in rows], indent=1))

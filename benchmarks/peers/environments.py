@@ -23,9 +23,9 @@ which has bpy."""
 _LLVM = "libllvm19"
 _LONGEST_INSTALLATION = 900.0
 _START_SECONDS = 300.0
-"""How long loading, compiling and building may take beside the seconds asked for."""
+"""Most seconds that loading, compiling and building may take beside those asked for."""
 _SECONDS_A_SAMPLE = 4.0
-"""How long a sample of all pixels may take where samples are asked for."""
+"""Most seconds that a sample of all pixels may take, where samples are asked for."""
 
 
 def describe_busy_host() -> dict[str, object]:

@@ -14,6 +14,14 @@ class PeersError(RuntimeError):
     """The comparison cannot go on."""
 
 
+def make_file(command: list[str], path: Path, seconds: float = _LIMIT) -> None:
+    """Run a program that writes a file, beside its log, in so many seconds at most. Raises PeersError."""
+    path.unlink(missing_ok=True)
+    problem = run(command, seconds, path.with_suffix(".log"))
+    if problem or not path.exists():
+        raise PeersError(f"{path.name} could not be made: {problem or 'no file'}")
+
+
 class SceneFiles:
     """.blend and exported files of scenes, in a folder; a changed description makes them anew."""
 
@@ -26,16 +34,15 @@ class SceneFiles:
         """The scene as Cycles opens it."""
         path = self._folder / f"{name}_{make_scene(name).fingerprint}.blend"
         if not path.exists():
-            self._make([sys.executable, "-m", "benchmarks.peers.adapters.blend", name, str(path)], path)
+            make_file([sys.executable, "-m", "benchmarks.peers.adapters.blend", name, str(path)], path)
         return path
 
     def saved(self, name: str) -> Path:
         """The scene as rppm export saves it, always anew: the exporter is part of what is measured."""
         blend = self.blend(name)
         path = blend.with_suffix(".npz")
-        path.unlink(missing_ok=True)
         command = [sys.executable, "-m", "rppm_addon", "export", str(blend), "-o", str(path)]
-        self._make([*command, "--resolution", f"{self._resolution}x{self._resolution}"], path)
+        make_file([*command, "--resolution", f"{self._resolution}x{self._resolution}"], path)
         return path
 
     def of(self, adapter: str, name: str) -> str:
@@ -43,8 +50,3 @@ class SceneFiles:
         if adapter == "cycles":
             return str(self.blend(name))
         return str(self.saved(name)) if adapter == "rppm" else ""
-
-    def _make(self, command: list[str], path: Path) -> None:
-        problem = run(command, _LIMIT, path.with_suffix(".log"))
-        if problem or not path.exists():
-            raise PeersError(f"{path.name} could not be made: {problem or 'no file'}")

@@ -3,7 +3,8 @@
 
 import pytest
 
-from benchmarks.peers.blend_files import COMPARED, FileComparison, FileError, Row, table
+from benchmarks.peers.blend_files import COMPARED, FileComparison, Row, table
+from benchmarks.peers.files import PeersError
 
 
 def rows():
@@ -26,5 +27,5 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path, monkeypatch):
     monkeypatch.setattr("benchmarks.peers.blend_files._FOLDER", tmp_path)
     source = tmp_path / "no.blend"
     source.write_bytes(b"no file of Blender's")
-    with pytest.raises(FileError, match=r"staged\.blend could not be made"):
+    with pytest.raises(PeersError, match=r"staged\.blend could not be made"):
         FileComparison("32x18", [1.0], 1.0).rows(source)

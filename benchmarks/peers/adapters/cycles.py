@@ -24,8 +24,8 @@ def render(job: Job, scene: Scene | None, recorder: Recorder) -> None:
     _set_up(blender_scene, job)
     if scene is not None:
         _set_light_paths(blender_scene, job)
-    if scene is not None and job.options.get("shadow_caustics"):
-        _mark_caustics(scene)
+        if job.options.get("shadow_caustics"):
+            _mark_caustics(scene)
     cycles = blender_scene.cycles
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.exr"

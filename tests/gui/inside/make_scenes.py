@@ -53,5 +53,5 @@ for number in range(across * across):
 save("many")
 
 # Blender's startup file, as an artist begins.
-bpy.ops.wm.read_homefile(app_template="", use_factory_startup_app_template_only=True)
+bpy.ops.wm.read_homefile(use_factory_startup=True)
 save("startup")

@@ -285,6 +285,15 @@ def engine_busy() -> dict[str, list[float]]:
     return {name: [busy for _, busy in calls] for name, calls in _calls.items()}
 
 
+# The extension's modules.
+
+
+def _module(name: str) -> types.ModuleType:
+    """Return a module of the extension, by its name in rppm_addon.blender."""
+    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
+    return importlib.import_module(f"{engine.__module__.rsplit('.', 2)[0]}.{name}")
+
+
 # Samples that a viewport shows.
 
 _samples: list[tuple[float, int]] = []
@@ -292,16 +301,15 @@ _samples: list[tuple[float, int]] = []
 
 def count_samples() -> None:
     """From now on note how many samples the pictures have that a viewport of RPPM draws."""
-    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    viewports = importlib.import_module(f"{engine.__module__.rsplit('.', 1)[0]}.viewport")
-    draw = viewports.Viewport.draw
+    module = _module("engine.viewport")
+    draw = module.Viewport.draw
     _samples.clear()
 
     def counted(self, *arguments):
         draw(self, *arguments)
         _samples.append((time.perf_counter(), self._session.status.iteration))
 
-    viewports.Viewport.draw = counted
+    module.Viewport.draw = counted
 
 
 def sampled() -> float | None:
@@ -314,15 +322,9 @@ def sampled() -> float | None:
 _slices: list[list[int] | None] = []
 
 
-def _module(name: str) -> types.ModuleType:
-    """A module of the extension's export."""
-    engine = next(c for c in bpy.types.RenderEngine.__subclasses__() if getattr(c, "bl_idname", "") == "RPPM")
-    return importlib.import_module(f"{engine.__module__.rsplit('.', 2)[0]}.export.{name}")
-
-
 def count_slices() -> None:
     """From now on note each slice of a viewport's export."""
-    module = _module("updates.sync")
+    module = _module("export.updates.sync")
     advance = module.SceneSync.advance
     _slices.clear()
 
@@ -339,7 +341,7 @@ _exported: list[str] = []
 
 def count_meshes() -> None:
     """From now on note whose mesh is exported."""
-    module = _module("instances.mesh_table")
+    module = _module("export.instances.mesh_table")
     export_mesh = module.export_mesh
 
     def counted(mesh, name, *arguments):

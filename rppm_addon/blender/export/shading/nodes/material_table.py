@@ -15,6 +15,8 @@ from .materials import export_material
 
 _NO_MATERIAL = 0
 """Stands for the session_uid of a material where there is none."""
+_DEFAULT_VOLUME = -1
+"""Stands for the place of the material that volume objects have where there is none."""
 
 
 class MaterialTable:
@@ -28,8 +30,8 @@ class MaterialTable:
         """Attributes that rays of nodes read wherever they hit, so that all meshes are asked for them."""
         self._context = context
         self._places: dict[int, int] = {}
-        self._of_volumes: dict[tuple[int, bool], int] = {}
-        """Places of materials as they are on volumes, by those of the materials and whether gas has them."""
+        self._of_volumes: dict[int, int] = {}
+        """Places of materials as they are on volumes, by those of the materials, or _DEFAULT_VOLUME."""
         self._on_round_shapes: set[int] = set()
         """Places of those that are on strands or points."""
         self.untracked: set[int] = set()
@@ -53,11 +55,14 @@ class MaterialTable:
         is_gas: it is on the gas of a fluid domain, which is not seen where it has no material; volume objects without
         one have Principled Volume.
         """
-        if (place, is_gas) not in self._of_volumes:
-            self._of_volumes[place, is_gas] = len(self.materials)
-            self.materials.append(self._on_volume(place, is_gas))
+        material = self.materials[place]
+        if place == self._places.get(_NO_MATERIAL) and not is_gas:
+            place, material = _DEFAULT_VOLUME, dataclasses.replace(material, interior=default_volume())
+        if place not in self._of_volumes:
+            self._of_volumes[place] = len(self.materials)
+            self.materials.append(_of_volume(material))
             self.attributes.append({})
-        return self._of_volumes[place, is_gas]
+        return self._of_volumes[place]
 
     def put_on_round_shapes(self, places: list[int]) -> None:
         """Materials are on strands or points as well."""
@@ -74,18 +79,10 @@ class MaterialTable:
         exported.on_round_shapes = place in self._on_round_shapes
         before = self.attributes[place], self.sampled
         self.materials[place], self.attributes[place] = exported, _attributes_of(exported)
-        for is_gas in (False, True):
-            if (place, is_gas) in self._of_volumes:
-                self.materials[self._of_volumes[place, is_gas]] = self._on_volume(place, is_gas)
+        if place in self._of_volumes:
+            self.materials[self._of_volumes[place]] = _of_volume(exported)
         self.sampled |= _sampled_of(exported)
         return (self.attributes[place], self.sampled) != before
-
-    def _on_volume(self, place: int, is_gas: bool) -> Material:
-        graph = NodeGraph()
-        graph.surface = graph.add("volume_boundary", "bsdf")
-        material = self.materials[place]
-        interior = default_volume() if place == self._places.get(_NO_MATERIAL) and not is_gas else material.interior
-        return dataclasses.replace(material, graph=graph, interior=interior, reads_grids=True)
 
     def _export(self, key: int, material: bpy.types.Material | None) -> Material:
         reads = self._context.untracked_reads
@@ -96,6 +93,12 @@ class MaterialTable:
                 exported = export_material(material, self._context)
         (self.untracked.add if self._context.untracked_reads > reads else self.untracked.discard)(key)
         return exported
+
+
+def _of_volume(material: Material) -> Material:
+    graph = NodeGraph()
+    graph.surface = graph.add("volume_boundary", "bsdf")
+    return dataclasses.replace(material, graph=graph, reads_grids=True)
 
 
 def _attributes_of(material: Material) -> dict[str, str]:
