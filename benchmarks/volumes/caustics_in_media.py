@@ -10,8 +10,6 @@ Markdown table.
 
 import argparse
 import dataclasses
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Sequence
@@ -25,8 +23,8 @@ import rppm_addon
 from rppm_addon.blender.export import export_scene
 from rppm_addon.scene import Scene
 from rppm_addon.session.render.renderer import Renderer
+from tools.gallery.render import build
 
-from .. import ROOT
 from ..peers.metrics import relative_mse
 from ..peers.references import combine
 
@@ -38,11 +36,7 @@ _NO_LIMIT = 1 << 24
 
 def open_scene(name: str, percent: int) -> None:
     """Make a scene of the gallery and open it, with settings of Cycles that leave nothing out."""
-    with tempfile.TemporaryDirectory() as folder:
-        blend = Path(folder) / f"{name}.blend"
-        script = ROOT / "docs" / "gallery" / f"{name}.py"
-        subprocess.run([sys.executable, script, blend], check=True, capture_output=True, cwd=ROOT)
-        bpy.ops.wm.open_mainfile(filepath=str(blend), load_ui=False, use_scripts=False)
+    bpy.ops.wm.open_mainfile(filepath=str(build(name)), load_ui=False, use_scripts=False)
     scene = bpy.context.scene
     scene.render.resolution_percentage = percent
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"

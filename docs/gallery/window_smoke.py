@@ -13,7 +13,7 @@ LOW, HIGH = (-0.42, -0.34, 0.42), (0.42, 0.40, 1.42)
 BOWL = 0.42
 """Height of its rim."""
 HALF, SILL, TOP, WALL = 0.42, 0.75, 1.75, 1.2
-"""Of the window: half of its width, its lowest and highest edges, and where its wall is."""
+"""Half of the window's width, its lowest and highest edges, and where its wall is."""
 
 
 def link(tree, kind, inputs, **properties):

@@ -163,7 +163,7 @@ class ProgressivePhotonMapper:
         """Return the noise of the film's noisiest block (NoiseEstimate.measure); only with use_adaptive_sampling."""
         estimate, exposure = self.stages.noise_estimate, self.scene.exposure
         iteration = Iteration(self.iteration, self.scene.settings.seed, skipped=self._skipped)
-        least = self.device_scene.motion.exposures(self.stages.bands, iteration)
+        least = self.device_scene.motion.least_exposed(self.stages.bands, iteration)
         context, film = self.device_scene.context, self.film.radiance
         return estimate.measure(context, film, exposure, least.skipped, least.number)
 

@@ -81,6 +81,7 @@ def build(name: str) -> Path:
     """The .blend file, of the script as it is now."""
     blend = BETWEEN / f"{name}-{script_digest(name)}.blend"
     if not blend.exists():
+        BETWEEN.mkdir(parents=True, exist_ok=True)
         for old in BETWEEN.glob(f"{name}-*.blend"):
             old.unlink()
         call(SCRIPTS / f"{name}.py", blend, label=f"building {name}")
@@ -184,7 +185,6 @@ def main() -> None:
     parser.add_argument("--film-samples", type=int, default=16, metavar="N", help="of each of their frames (16)")
     parser.add_argument("--draft", action="store_true", help="RPPM alone, to out/gallery/NAME.png")
     options = parser.parse_args()
-    BETWEEN.mkdir(parents=True, exist_ok=True)
     for name in options.only:
         if options.draft:
             blend, picture = build(name), BETWEEN / f"{name}_draft.exr"

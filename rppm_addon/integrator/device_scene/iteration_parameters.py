@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Parameters of an iteration that many programs read: one uniform block, as Cycles has its KernelData."""
 
-from collections.abc import Mapping
-
 import moderngl
 import numpy as np
 
@@ -68,7 +66,6 @@ class IterationBlock(BufferSet):
     def __init__(self, context: Context, library: ProgramLibrary) -> None:
         super().__init__(context, library)
         self._values: dict[str, object] = {}
-        self._radii: Mapping[str, float] = {}
 
     @property
     def buffer(self) -> moderngl.Buffer:
@@ -94,18 +91,20 @@ class IterationBlock(BufferSet):
             "orthographic_camera": scene.camera.orthographic and scene.camera.panorama is None,
             "most_transparent": 1.0 - scene.pass_alpha_threshold if scene.pass_alpha_threshold > 0.0 else np.inf,
             "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),
+            **dict.fromkeys(RADIUS_PARAMETERS, 0.0),
         }
-        self._write(dict.fromkeys(RADIUS_PARAMETERS, 0.0))
+        self._write()
 
     def write_number_in_film(self, number: int) -> None:
         """Take the number of the iteration among those of the film, for the bands of rows to come."""
-        self._values["number_in_film"] = number
-        self._write(self._radii)
+        if number != self._values["number_in_film"]:
+            self._values["number_in_film"] = number
+            self._write()
 
     def write_radii(self, radii: Radii) -> None:
         """Take the radii of the iteration, once its photons are known."""
-        self._write(radii.parameters)
+        self._values |= radii.parameters
+        self._write()
 
-    def _write(self, radii: Mapping[str, float]) -> None:
-        self._radii = radii
-        self.buffer.write(ITERATION_PARAMETERS.pack({**self._values, **radii}))
+    def _write(self) -> None:
+        self.buffer.write(ITERATION_PARAMETERS.pack(self._values))

@@ -75,12 +75,3 @@ class RollingShutter:
             numbers = np.arange(iteration.skipped, iteration.number)[:, None]
             exposed &= (_GOLDEN * (numbers + 7 * np.arange(len(self._bands)))) % 1.0 < openness
         return exposed
-
-
-def iterations_of_bands(
-    shutter: Shutter | None, camera: Camera, bands: Sequence[Band], iteration: Iteration
-) -> list[tuple[Band, Iteration]]:
-    """The bands that take part in an iteration, with the iteration as it is for each: all without a rolling shutter."""
-    if shutter is None or not shutter.is_rolling:
-        return [(band, iteration) for band in bands]
-    return RollingShutter(shutter, camera, bands).iterations(iteration)

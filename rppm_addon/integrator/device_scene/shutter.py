@@ -14,7 +14,7 @@ from ..common.require import require
 from ..surfaces.geometry import finite_bounds
 from ..surfaces.placements import placed_boxes
 from .moments import moment
-from .rolling_shutter import RollingShutter, iterations_of_bands
+from .rolling_shutter import RollingShutter
 
 _MOMENTS = 17
 """Evenly over the time of the shutter: where what moves is looked for beforehand."""
@@ -84,13 +84,20 @@ class SceneMotion:
         return require(self._moving).at(time)
 
     def iterations_of_bands(self, bands: Sequence[Band], iteration: Iteration) -> list[tuple[Band, Iteration]]:
-        """Return the bands that take part in an iteration, with the iteration as it is for each."""
-        return iterations_of_bands(self.scene.shutter, self.scene.camera, bands, iteration)
+        """Return the bands that take part in an iteration, with the iteration as it is for each: all without a rolling
+        shutter."""
+        rolling = self._rolling_shutter(bands)
+        return [(band, iteration) for band in bands] if rolling is None else rolling.iterations(iteration)
 
-    def exposures(self, bands: Sequence[Band], iteration: Iteration) -> Iteration:
+    def least_exposed(self, bands: Sequence[Band], iteration: Iteration) -> Iteration:
         """Return an iteration as the band sees it that has taken part in the film least."""
+        rolling = self._rolling_shutter(bands)
+        if rolling is None:
+            return iteration
+        return dataclasses.replace(iteration, number=rolling.least_count(iteration), skipped=0)
+
+    def _rolling_shutter(self, bands: Sequence[Band]) -> RollingShutter | None:
         shutter = self.scene.shutter
         if shutter is None or not shutter.is_rolling:
-            return iteration
-        count = RollingShutter(shutter, self.scene.camera, bands).least_count(iteration)
-        return dataclasses.replace(iteration, number=count, skipped=0)
+            return None
+        return RollingShutter(shutter, self.scene.camera, bands)

@@ -68,10 +68,10 @@ def test_the_noise_of_all_rows_is_measured(mapper):
     mapper.build(rolling_room(use_adaptive_sampling=True))
     mapper.iterate()
     assert mapper.measure_noise() == np.inf
-    for _ in range(63):
+    for _ in range(127):
         mapper.iterate()
     noisy = mapper.measure_noise()
     assert 0.0 < noisy < 1.0
-    for _ in range(64 * 3):
+    for _ in range(128 * 2):
         mapper.iterate()
     assert mapper.measure_noise() < 0.8 * noisy

@@ -188,11 +188,10 @@ def fake_gpu(monkeypatch, tmp_path):
 
 
 def test_a_gpu_denoises_where_the_library_knows_one(fake_gpu, tmp_path):
-    fake = fake_gpu
     library = OpenImageDenoise(tmp_path / "library.so", use_gpu=True)
-    assert (fake.opened, library.device_name) == ([1], "A card")
+    assert (fake_gpu.opened, library.device_name) == ([1], "A card")
     denoised = library.filter({"color": np.ones((2, 3, 3))}, DenoisingQuality.HIGH)
-    assert (denoised == 0.25).all() and fake.buffers == [None, None]
+    assert (denoised == 0.25).all() and fake_gpu.buffers == [None, None]
     assert OpenImageDenoise(tmp_path / "library.so").device_name == "the processor"
 
 

@@ -9,8 +9,9 @@ import pytest
 from rppm_addon.integrator.common.band import bands_of
 from rppm_addon.integrator.common.iteration import Iteration
 from rppm_addon.integrator.device_scene.moments import moment
-from rppm_addon.integrator.device_scene.rolling_shutter import RollingShutter, iterations_of_bands
-from rppm_addon.scene import Camera, Shutter
+from rppm_addon.integrator.device_scene.rolling_shutter import RollingShutter
+from rppm_addon.integrator.device_scene.shutter import SceneMotion
+from rppm_addon.scene import Camera, Scene, Shutter
 
 HEIGHT, ITERATIONS = 32, 256
 CAMERA = Camera(np.eye(4), (-1.0, 1.0, -1.0, 1.0), 8, HEIGHT)
@@ -96,6 +97,8 @@ def test_a_border_keeps_the_times_of_the_whole_picture():
 
 
 def test_other_shutters_expose_all_rows_together():
-    iteration = Iteration(3, 0)
+    motion, iteration = SceneMotion(), Iteration(3, 0)
     for each in (None, shutter(1.0)):
-        assert iterations_of_bands(each, CAMERA, BANDS, iteration) == [(band, iteration) for band in BANDS]
+        motion.take(Scene(CAMERA, shutter=each))
+        assert motion.iterations_of_bands(BANDS, iteration) == [(band, iteration) for band in BANDS]
+        assert motion.least_exposed(BANDS, iteration) is iteration
