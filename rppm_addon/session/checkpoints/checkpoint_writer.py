@@ -85,10 +85,16 @@ class CheckpointWriter:
     def begin(self, scene: Scene, iterations: int | None) -> "Continuation":
         """How to render the scene, to so many iterations in the film (None: until time is up).
 
-        Raises CheckpointError when the checkpoint is of another scene, has other settings or more iterations.
+        Raises CheckpointError when the checkpoint is of another scene, has other settings or more iterations, or for
+        a part of a still whose rows are exposed one after the other: merging counts the iterations of whole parts.
         """
         from .continuation import Continuation
 
+        if self.request.part is not None and scene.shutter is not None and scene.shutter.is_rolling:
+            raise CheckpointError(
+                "a still with Rolling Shutter cannot be rendered in parts, as each of its rows takes part in other "
+                "samples; render it as a whole, or set Rolling Shutter to None"
+            )
         self._render = still_render(scene, self.request.source)
         summary, sample_offset = self._summary, self.request.sample_offset
         if summary is not None:

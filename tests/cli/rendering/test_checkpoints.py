@@ -14,7 +14,7 @@ from support.render_states import assert_same_state
 
 from rppm_addon.integrator.common.iteration import LEARNING_ITERATIONS
 from rppm_addon.pictures import read_exr
-from rppm_addon.scene import Instance, save_scene
+from rppm_addon.scene import Instance, Shutter, save_scene
 from rppm_addon.session.checkpoints.checkpoint_file import read_checkpoint, read_summary
 
 LAST = LEARNING_ITERATIONS + 3
@@ -160,6 +160,17 @@ def test_ranges_that_make_no_sense(tmp_path, two_floors):
     for outputs in (["-o", tmp_path / "a.png"], ["-o", tmp_path / "a.exr", "-o", tmp_path / "b.exr"]):
         status, _, errors = rppm_here("render", two_floors, *outputs, "--samples-range", "0:2")
         assert (status, "give one -o PART.exr" in errors) == (1, True)
+
+
+def test_a_rolling_shutter_is_rendered_as_a_whole(tmp_path):
+    """Its rows are exposed in different samples, which merging would take for those of all rows."""
+    scene, path = floor_scene(), tmp_path / "rolling.npz"
+    scene.shutter = Shutter(np.ones(4), rolling_duration=0.1)
+    save_scene(scene, path)
+    command = ["render", path, "-o", tmp_path / "picture.exr"]
+    status, _, errors = rppm_here(*command, "--samples-range", "0:2")
+    assert (status, "render it as a whole, or set Rolling Shutter to None" in errors) == (1, True)
+    assert rppm_here(*command, "--samples", 2)[0] == 0
 
 
 @pytest.mark.long
