@@ -192,7 +192,8 @@ class Geometry(BufferSet):
         world = TriangleSources(placed_meshes, expanded, placed_by, slots_uploaded)
         first_materials = slots_uploaded[entries["first_slot"]]
         self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials, world)
-        is_new = self._require_triangles(of.instances, lengths)
+        # After a build that failed, a buffer may be another one without what it held.
+        is_new = self._require_triangles(of.instances, lengths) or before is None
         if is_new or world != before:
             self._gather_triangles(len(of.instances))
         self._objects.gather(self._inputs.blocks, self.triangles, is_new)
