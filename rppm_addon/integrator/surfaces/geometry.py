@@ -372,9 +372,9 @@ class Geometry(BufferSet):
         """Find the bounds around the placements."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
         boxes, is_near = self.placed.boxes, self.placed.is_near
-        near = boxes if is_near.all() else boxes[is_near]
-        low = np.minimum(low, near[:, 0].min(axis=0, initial=np.inf))
-        high = np.maximum(high, near[:, 1].max(axis=0, initial=-np.inf))
+        near = finite_bounds(boxes if is_near.all() else boxes[is_near])
+        if near is not None:
+            low, high = np.minimum(low, near[0]), np.maximum(high, near[1])
         for index in np.flatnonzero(~is_near):
             name = self.placements.instances[index].object_name
             log.warning("object %s has a matrix that is not finite; its triangles are left out", name)
