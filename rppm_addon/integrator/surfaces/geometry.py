@@ -215,15 +215,16 @@ class Geometry(BufferSet):
         has_all = len(chosen) == len(scene.instances)
         instances = list(scene.instances) if has_all else [scene.instances[index] for index in chosen.tolist()]
         which = places[columns.meshes[chosen]]
-        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)[which]
+        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
         insets = volumes_alone(columns.material_lists, scene.materials)
         are_inset = np.flatnonzero(np.isin(columns.materials[chosen], insets)) if insets else np.zeros(0, np.int64)
         matrices = columns.matrices if has_all and not len(are_inset) else columns.matrices[chosen]
         for number in are_inset.tolist():
-            matrices[number] = inset_matrix(matrices[number], boxes[number], number)
+            matrices[number] = inset_matrix(matrices[number], boxes[which[number]], number)
         has_pivots = scene.world_origin is not None
         of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
-        self.placed.take(matrices, boxes, has_pivots, _among(chosen, read) if of.keeps_rows(before) else None)
+        changed = _among(chosen, read) if of.keeps_rows(before) else None
+        self.placed.take(matrices, boxes, which, has_pivots, changed)
         self._placed_of = of
         return of
 
