@@ -185,7 +185,7 @@ class Geometry(BufferSet):
         self._inputs.instances.upload(entries)
         self._inputs.slot_materials.upload(slots_uploaded)
         expanded = np.flatnonzero(is_expanded)
-        placed_meshes = [meshes[index] for index in which[expanded].tolist()]
+        placed_meshes = [meshes[index] for index in np.flatnonzero(np.bincount(which[expanded])).tolist()]
         # As bytes: copies of records leave the padding between members undefined.
         placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
         before, self._world = self._world, None  # should gathering fail
