@@ -15,7 +15,6 @@ from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
-from ...materials.traits.emitted import Emits, emits
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
@@ -284,7 +283,8 @@ class Geometry(BufferSet):
         placement's first slot."""
         self.instanced = None
         first = next_range(self.triangle_count)
-        has_emitters = bool(self._may_emit(scene)[placements].any())
+        glow = self.columns.glow(scene.materials)[require(self._placed_of).chosen]
+        has_emitters = bool(glow[placements].any())
         self._hits.place(first, StageSizes.of(scene) if len(placements) else None, has_emitters)
         mesh_of = which[placements]
         used = np.flatnonzero(np.bincount(mesh_of))
@@ -323,11 +323,6 @@ class Geometry(BufferSet):
     ) -> None:
         outputs = self.triangles, self.attributes
         self._hits.gather(numbers, kind, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
-
-    def _may_emit(self, scene: Scene) -> np.ndarray:
-        """(placements,) bool, those with a material that may emit light."""
-        glowing = {m for m, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
-        return self.columns.have(glowing)[require(self._placed_of).chosen]
 
     def listed_parts(self, count: int) -> list[slice]:
         """Parts of so many triangles that gather_listed takes at a time."""
