@@ -62,7 +62,7 @@ class Shutter:
 
     @property
     def is_rolling(self) -> bool:
-        """Whether rows are exposed one after the other."""
+        """True where rows are exposed one after the other."""
         return self.rolling_duration < 1.0
 
     def time_of(self, fraction: float) -> float:

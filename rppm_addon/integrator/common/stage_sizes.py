@@ -44,7 +44,7 @@ class StageSizes:
     features: ShaderFeatures = field(default_factory=ShaderFeatures)
     """Features that programs are compiled for."""
     has_rolling_shutter: bool = False
-    """Whether rows are exposed one after the other."""
+    """True where rows are exposed one after the other."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands = NO_DEMANDS) -> "StageSizes":
