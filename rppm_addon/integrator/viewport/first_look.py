@@ -88,8 +88,8 @@ class FirstLook(BufferSet):
         self._geometry = geometry
         self._displaced, self._centered, self._instanced = displaced, centered, instanced
         self._shown: Scene | None = None
-        self._uploaded: InstancedMeshes | None = None
-        """Instances whose records are on the device."""
+        self._uploaded: int | None = None
+        """Version of the instances whose records are on the device."""
         self._blends = False
         """Whether something is neither opaque nor a hole."""
         self._sky = np.zeros(3)
@@ -175,7 +175,7 @@ class FirstLook(BufferSet):
         instanced = self._geometry.instanced
         if instanced is None or instanced.placed_triangle_count > _MOST_TRIANGLES:
             return
-        if instanced is not self._uploaded:
+        if instanced.version != self._uploaded:
             self._upload_instances(instanced)
         program = self._library.draw("viewport/first_look/instances.vert", "viewport/first_look/first_look.frag")
         inputs = {**blocks, "DrawnInstances": self._drawn_instances.buffer}
@@ -199,7 +199,7 @@ class FirstLook(BufferSet):
             records[name] = instanced.entries[name][order]
         records["material"], records["number"] = instanced.first_materials[order], instanced.placements[order]
         self._drawn_instances.upload(records)
-        self._uploaded = instanced
+        self._uploaded = instanced.version
 
     def take(self, scene: Scene) -> Scene:
         """Upload what is not the very object of the scene before; returns the scene to be drawn, which is centered."""
