@@ -10,6 +10,8 @@ from .instances import BOTTOM_LEVEL_INSTANCE, InstancedMeshes
 
 _AT_ONCE = 1 << 16
 """Records that are made at a time, lest those of a million stand in memory at once."""
+_NEAR = 256
+"""Rows from one that has changed to the next up to which those between are written again: fewer calls take less time."""
 
 
 class InstanceRecords:
@@ -50,9 +52,11 @@ class InstanceRecords:
 
 
 def runs(rows: np.ndarray, most: int) -> list[np.ndarray]:
-    """Ascending rows, those together that follow each other, but no more than ``most``."""
-    ends = np.flatnonzero((np.diff(rows) != 1) | (np.arange(1, len(rows)) % most == 0)) + 1
-    return np.split(rows, ends) if len(rows) else []
+    """Ascending rows in runs of rows that follow each other, of no more than ``most``: with those between rows that are
+    near each other."""
+    parts = np.split(rows, np.flatnonzero(np.diff(rows) > _NEAR) + 1) if len(rows) else []
+    spans = [(int(part[0]), int(part[-1]) + 1) for part in parts]
+    return [np.arange(start, min(start + most, end)) for first, end in spans for start in range(first, end, most)]
 
 
 def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float, rows: np.ndarray) -> np.ndarray:
