@@ -29,12 +29,14 @@ class InstanceRecords:
         """
         before, self._instanced = self._instanced, None  # until they are written
         # A margin for half of the reach still leaves fifteen times the rounding error.
-        if before is None or not instanced.has_rows_of(before) or reach > 2.0 * self._reach:
-            stays = False
-        else:
-            stays = np.array_equal(self._roots, roots)
-        if stays:
-            return instanced.changed_since(before)  # type: ignore[arg-type]  # there is one
+        is_far_enough = reach <= 2.0 * self._reach
+        if (
+            before is not None
+            and is_far_enough
+            and np.array_equal(self._roots, roots)
+            and instanced.has_rows_of(before)
+        ):
+            return instanced.changed_since(before)
         self._roots, self._reach = roots, reach
         return None
 
