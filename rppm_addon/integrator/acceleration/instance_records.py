@@ -11,7 +11,7 @@ from .instances import BOTTOM_LEVEL_INSTANCE, InstancedMeshes
 _AT_ONCE = 1 << 16
 """Records that are made at a time, lest those of a million stand in memory at once."""
 _NEAR = 256
-"""Rows from one that has changed to the next up to which those between are written again: fewer calls take less time."""
+"""Rows from one that has changed to the next, up to which those between are written again: few calls take less time."""
 
 
 class InstanceRecords:
@@ -29,13 +29,8 @@ class InstanceRecords:
         """
         before, self._instanced = self._instanced, None  # until they are written
         # A margin for half of the reach still leaves fifteen times the rounding error.
-        is_far_enough = reach <= 2.0 * self._reach
-        if (
-            before is not None
-            and is_far_enough
-            and np.array_equal(self._roots, roots)
-            and instanced.has_rows_of(before)
-        ):
+        has_margin = reach <= 2.0 * self._reach
+        if before is not None and has_margin and np.array_equal(self._roots, roots) and instanced.has_rows_of(before):
             return instanced.changed_since(before)
         self._roots, self._reach = roots, reach
         return None
