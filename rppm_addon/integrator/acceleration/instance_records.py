@@ -10,6 +10,8 @@ from .instances import BOTTOM_LEVEL_INSTANCE, InstancedMeshes
 
 _AT_ONCE = 1 << 16
 """Records that are made at a time, lest those of a million stand in memory at once."""
+_NEAR = 256
+"""Rows from one that has changed to the next, up to which those between are written again: few calls take less time."""
 
 
 class InstanceRecords:
@@ -27,12 +29,9 @@ class InstanceRecords:
         """
         before, self._instanced = self._instanced, None  # until they are written
         # A margin for half of the reach still leaves fifteen times the rounding error.
-        if before is None or not instanced.has_rows_of(before) or reach > 2.0 * self._reach:
-            stays = False
-        else:
-            stays = np.array_equal(self._roots, roots)
-        if stays:
-            return instanced.changed_since(before)  # type: ignore[arg-type]  # there is one
+        has_margin = reach <= 2.0 * self._reach
+        if before is not None and has_margin and np.array_equal(self._roots, roots) and instanced.has_rows_of(before):
+            return instanced.changed_since(before)
         self._roots, self._reach = roots, reach
         return None
 
@@ -50,9 +49,11 @@ class InstanceRecords:
 
 
 def runs(rows: np.ndarray, most: int) -> list[np.ndarray]:
-    """Ascending rows, those together that follow each other, but no more than ``most``."""
-    ends = np.flatnonzero((np.diff(rows) != 1) | (np.arange(1, len(rows)) % most == 0)) + 1
-    return np.split(rows, ends) if len(rows) else []
+    """Ascending rows in runs of rows that follow each other, of no more than ``most``: with those between rows that are
+    near each other."""
+    parts = np.split(rows, np.flatnonzero(np.diff(rows) > _NEAR) + 1) if len(rows) else []
+    spans = [(int(part[0]), int(part[-1]) + 1) for part in parts]
+    return [np.arange(start, min(start + most, end)) for first, end in spans for start in range(first, end, most)]
 
 
 def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float, rows: np.ndarray) -> np.ndarray:

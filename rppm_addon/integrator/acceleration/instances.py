@@ -100,7 +100,8 @@ class TriangleSources:
     """Meshes and places that triangles on the device are made of: equal to others of which the same ones are made."""
 
     def __init__(self, meshes: list[Mesh], *places: np.ndarray) -> None:
-        """meshes: of each instance that has triangles; places: arrays by which these are placed."""
+        """meshes: those that have triangles there, each once; places: arrays by which instances are placed, and which
+        tell the mesh of each."""
         self._arrays = [array for mesh in meshes for array in _arrays_of(mesh)]
         self._places = [array.tobytes() for array in places]
 

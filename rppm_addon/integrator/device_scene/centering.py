@@ -123,8 +123,9 @@ class SceneBounds:
         self._instances: list[Instance] = []
         self._boxes: list[Any] = []
         """Bounds of the meshes of the scene before, the same objects as long as the positions are; None without any."""
-        self._corners = np.zeros((2, 0, 3))
-        """(2, instances, 3) low and high, meters; infinite, and the wrong way round, without points."""
+        self._corners = np.zeros((2, 3, 0))
+        """(2, 3, instances) low and high, meters; infinite, and the wrong way round, without points. Axes come first:
+        NumPy is slow at reducing many short rows."""
 
     def of(self, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest coordinates of the instances, each (3,) meters; infinite without any."""
@@ -139,7 +140,7 @@ class SceneBounds:
             rows = changed_members(self._instances, instances)
         else:
             rows = np.arange(count)
-            self._corners = np.array([np.full((count, 3), np.inf), np.full((count, 3), -np.inf)])
+            self._corners = np.array([np.full((3, count), np.inf), np.full((3, count), -np.inf)])
         self._instances = []  # should anything fail
         of_mesh = np.array([np.full((2, 3), np.nan) if box is None else box for box in boxes]).reshape(-1, 2, 3)
         for start in range(0, len(rows), _AT_ONCE):
@@ -147,11 +148,11 @@ class SceneBounds:
             some = [instances[row] for row in part.tolist()]
             matrices = np.array([instance.matrix for instance in some], np.float64)
             lows, highs, good = placed_boxes(matrices, of_mesh[column(some, "mesh", np.int64)])
-            self._corners[0, part] = np.where(good[:, None], lows, np.inf)
-            self._corners[1, part] = np.where(good[:, None], highs, -np.inf)
+            self._corners[0][:, part] = np.where(good, lows.T, np.inf)
+            self._corners[1][:, part] = np.where(good, highs.T, -np.inf)
         self._instances, self._boxes = list(instances), boxes
         low, high = self._corners
-        return low.min(axis=0, initial=np.inf), high.max(axis=0, initial=-np.inf)
+        return low.min(axis=1, initial=np.inf), high.max(axis=1, initial=-np.inf)
 
 
 def _moved(instances: list[Instance], origin: np.ndarray) -> list[Instance]:

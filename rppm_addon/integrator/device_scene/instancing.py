@@ -65,7 +65,7 @@ def instanced_members(
     is_automatic, total = wanted is Instancing.AUTOMATIC, lengths[meshes].sum() if len(meshes) else 0
     if not total or (is_automatic and total < MANY_TRIANGLES):
         return None
-    glows = _glow(scene, columns)
+    glows = columns.glow(scene.materials)
     may_be = _may_be_instanced(scene, columns)
     if glows.any():
         may_be &= ~glows | _may_share_emitters(scene, columns)
@@ -111,13 +111,6 @@ def _has_media(scene: Scene) -> bool:
 def _must_be_expanded(material: Material) -> bool:
     is_dark = emits(material.graph) is Emits.NOTHING
     return material.interior is not None or not (is_dark or emits_alike(material.graph))
-
-
-def _glow(scene: Scene, columns: InstanceColumns) -> np.ndarray:
-    """(instances,) bool, those with a material that emits light."""
-    return columns.have(
-        {index for index, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
-    )
 
 
 def _may_share_emitters(scene: Scene, columns: InstanceColumns) -> np.ndarray:

@@ -15,7 +15,6 @@ from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
-from ...materials.traits.emitted import Emits, emits
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
@@ -185,14 +184,15 @@ class Geometry(BufferSet):
         self._inputs.instances.upload(entries)
         self._inputs.slot_materials.upload(slots_uploaded)
         expanded = np.flatnonzero(is_expanded)
-        placed_meshes = [meshes[index] for index in which[expanded].tolist()]
+        placed_meshes = [meshes[index] for index in np.flatnonzero(np.bincount(which[expanded])).tolist()]
         # As bytes: copies of records leave the padding between members undefined.
         placed_by = entries.view(np.uint8).reshape(len(entries), INSTANCE_ENTRY.size)[expanded]
         before, self._world = self._world, None  # should gathering fail
         world = TriangleSources(placed_meshes, expanded, placed_by, slots_uploaded)
         first_materials = slots_uploaded[entries["first_slot"]]
         self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials, world)
-        is_new = self._require_triangles(of.instances, lengths)
+        # After a build that failed, a buffer may be another one without what it held.
+        is_new = self._require_triangles(of.instances, lengths) or before is None
         if is_new or world != before:
             self._gather_triangles(len(of.instances))
         self._objects.gather(self._inputs.blocks, self.triangles, is_new)
@@ -214,15 +214,16 @@ class Geometry(BufferSet):
         has_all = len(chosen) == len(scene.instances)
         instances = list(scene.instances) if has_all else [scene.instances[index] for index in chosen.tolist()]
         which = places[columns.meshes[chosen]]
-        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)[which]
+        boxes = np.array([box or np.zeros((2, 3)) for box in bounds]).reshape(-1, 2, 3)
         insets = volumes_alone(columns.material_lists, scene.materials)
         are_inset = np.flatnonzero(np.isin(columns.materials[chosen], insets)) if insets else np.zeros(0, np.int64)
         matrices = columns.matrices if has_all and not len(are_inset) else columns.matrices[chosen]
         for number in are_inset.tolist():
-            matrices[number] = inset_matrix(matrices[number], boxes[number], number)
+            matrices[number] = inset_matrix(matrices[number], boxes[which[number]], number)
         has_pivots = scene.world_origin is not None
         of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
-        self.placed.take(matrices, boxes, has_pivots, _among(chosen, read) if of.keeps_rows(before) else None)
+        changed = _among(chosen, read) if of.keeps_rows(before) else None
+        self.placed.take(matrices, boxes, which, has_pivots, changed)
         self._placed_of = of
         return of
 
@@ -282,7 +283,8 @@ class Geometry(BufferSet):
         placement's first slot."""
         self.instanced = None
         first = next_range(self.triangle_count)
-        has_emitters = bool(self._may_emit(scene)[placements].any())
+        glow = self.columns.glow(scene.materials)[require(self._placed_of).chosen]
+        has_emitters = bool(glow[placements].any())
         self._hits.place(first, StageSizes.of(scene) if len(placements) else None, has_emitters)
         mesh_of = which[placements]
         used = np.flatnonzero(np.bincount(mesh_of))
@@ -321,11 +323,6 @@ class Geometry(BufferSet):
     ) -> None:
         outputs = self.triangles, self.attributes
         self._hits.gather(numbers, kind, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
-
-    def _may_emit(self, scene: Scene) -> np.ndarray:
-        """(placements,) bool, those with a material that may emit light."""
-        glowing = {m for m, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
-        return self.columns.have(glowing)[require(self._placed_of).chosen]
 
     def listed_parts(self, count: int) -> list[slice]:
         """Parts of so many triangles that gather_listed takes at a time."""
@@ -371,9 +368,9 @@ class Geometry(BufferSet):
         """Find the bounds around the placements."""
         low, high = (np.full(3, np.inf), np.full(3, -np.inf)) if swept is None else swept
         boxes, is_near = self.placed.boxes, self.placed.is_near
-        near = boxes if is_near.all() else boxes[is_near]
-        low = np.minimum(low, near[:, 0].min(axis=0, initial=np.inf))
-        high = np.maximum(high, near[:, 1].max(axis=0, initial=-np.inf))
+        near = finite_bounds(boxes if is_near.all() else boxes[is_near])
+        if near is not None:
+            low, high = np.minimum(low, near[0]), np.maximum(high, near[1])
         for index in np.flatnonzero(~is_near):
             name = self.placements.instances[index].object_name
             log.warning("object %s has a matrix that is not finite; its triangles are left out", name)

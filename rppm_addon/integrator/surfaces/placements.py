@@ -105,10 +105,12 @@ class PlacedArrays:
         self.versions = np.zeros(0, np.int64)
         """(n,) the call since which each row is as it is."""
 
-    def take(self, matrices: np.ndarray, boxes: np.ndarray, has_pivots: bool, changed: np.ndarray | None) -> None:
-        """Take the matrices (n, 4, 4) of the placements and the boxes (n, 2, 3) of their meshes. ``has_pivots``: the
-        scene is far from the world's origin. ``changed``: the rows that differ from those of the last time; None for
-        all."""
+    def take(
+        self, matrices: np.ndarray, boxes: np.ndarray, which: np.ndarray, has_pivots: bool, changed: np.ndarray | None
+    ) -> None:
+        """Take the matrices (n, 4, 4) of the placements, the boxes (meshes, 2, 3) of meshes, and which of these each
+        has, (n,). ``has_pivots``: the scene is far from the world's origin. ``changed``: the rows that differ from
+        those of the last time; None for all."""
         self.matrices = matrices
         if changed is None:
             count = len(matrices)
@@ -119,11 +121,12 @@ class PlacedArrays:
         self.version += 1
         rows = np.arange(len(matrices)) if changed is None else changed
         for start in range(0, len(rows), _AT_ONCE):
-            self._compute(boxes, has_pivots, rows[start : start + _AT_ONCE])
+            part = rows[start : start + _AT_ONCE]
+            self._compute(boxes[which[part]], has_pivots, part)
 
     def _compute(self, boxes: np.ndarray, has_pivots: bool, chosen: np.ndarray) -> None:
-        """Fill in rows, by the boxes of the meshes of all."""
-        matrices, boxes = self.matrices[chosen], boxes[chosen]
+        """Fill in rows, by the boxes (rows, 2, 3) of their meshes."""
+        matrices = self.matrices[chosen]
         self.versions[chosen] = self.version
         with np.errstate(invalid="ignore", over="ignore"):
             self.determinants[chosen] = determinants(matrices)

@@ -23,7 +23,7 @@ from ...scene.storage.sharing import same_members
 from ..acceleration.instances import InstancedMeshes
 from ..common.band import MAX_RASTER_PIXELS
 from ..common.camera_view import CAMERA_VIEW, camera_view
-from ..common.instance_columns import InstanceColumns
+from ..common.instance_columns import InstanceColumns, column
 from ..surfaces.geometry import Geometry
 
 PLAIN_SURFACE = Record(
@@ -88,8 +88,8 @@ class FirstLook(BufferSet):
         self._geometry = geometry
         self._displaced, self._centered, self._instanced = displaced, centered, instanced
         self._shown: Scene | None = None
-        self._uploaded: InstancedMeshes | None = None
-        """Instances whose records are on the device."""
+        self._uploaded: int | None = None
+        """Version of the instances whose records are on the device."""
         self._blends = False
         """Whether something is neither opaque nor a hole."""
         self._sky = np.zeros(3)
@@ -175,7 +175,7 @@ class FirstLook(BufferSet):
         instanced = self._geometry.instanced
         if instanced is None or instanced.placed_triangle_count > _MOST_TRIANGLES:
             return
-        if instanced is not self._uploaded:
+        if instanced.version != self._uploaded:
             self._upload_instances(instanced)
         program = self._library.draw("viewport/first_look/instances.vert", "viewport/first_look/first_look.frag")
         inputs = {**blocks, "DrawnInstances": self._drawn_instances.buffer}
@@ -199,7 +199,7 @@ class FirstLook(BufferSet):
             records[name] = instanced.entries[name][order]
         records["material"], records["number"] = instanced.first_materials[order], instanced.placements[order]
         self._drawn_instances.upload(records)
-        self._uploaded = instanced
+        self._uploaded = instanced.version
 
     def take(self, scene: Scene) -> Scene:
         """Upload what is not the very object of the scene before; returns the scene to be drawn, which is centered."""
@@ -210,9 +210,9 @@ class FirstLook(BufferSet):
             instanced = functools.partial(self._instanced, displaced)
             self._geometry.build(displaced, len(scene.materials), instanced=instanced)
             surfaces = [plain_surface(owner.graph, scene.images) for owner in (*scene.materials, default_material())]
-            opacities = list(map(_opacity, self._geometry.placements.instances))
+            opacities = _opacities(self._geometry.placements.instances)
             self._surfaces.upload(_records(surfaces))
-            self._opacities.upload(np.array(opacities or [0.0], np.float32))
+            self._opacities.upload(opacities if len(opacities) else np.zeros(1, np.float32))
             self._blends = any(surface.opacity < 1.0 for surface in surfaces)
         self._sky = np.maximum(scene.world.radiance, 0.0).astype(np.float64)
         if scene.world.graph is not None:
@@ -221,10 +221,11 @@ class FirstLook(BufferSet):
         return scene
 
 
-def _opacity(instance: Instance) -> float:
-    if instance.shadow_catcher or not instance.visibility & RayVisibility.CAMERA:
-        return -1.0
-    return 0.0 if instance.holdout else 1.0
+def _opacities(instances: list[Instance]) -> np.ndarray:
+    """(n,) float32 of the block InstanceOpacities."""
+    is_seen = column(instances, "visibility", np.int64) & int(RayVisibility.CAMERA) != 0
+    is_seen &= ~column(instances, "shadow_catcher", bool)
+    return np.where(is_seen, ~column(instances, "holdout", bool), -1.0).astype(np.float32)
 
 
 def _records(surfaces: list[PlainSurface]) -> np.ndarray:

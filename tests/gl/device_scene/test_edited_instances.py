@@ -48,6 +48,12 @@ def shifted(scene: Scene, member: int, *step: float) -> Scene:
     return edited(scene, member, matrix=matrix)
 
 
+def shifted_here_and_there(scene: Scene) -> Scene:
+    for member in (2, 3, 5, 40, 41, *range(300, COUNT, 300)):
+        scene = shifted(scene, member, 0.0, 0.0, 0.1)
+    return scene
+
+
 def mirrored(scene: Scene) -> Scene:
     return edited(scene, 30, matrix=scene.instances[-30].matrix @ np.diag([-1.0, 1.0, 1.0, 1.0]))
 
@@ -69,6 +75,7 @@ def with_another_leaf(scene: Scene) -> Scene:
 EDITS: dict[str, Callable[[Scene], Scene]] = {
     "one moves": lambda scene: shifted(scene, 3, 0.1, 0.1, 0.2),
     "it moves on, out of the heap": lambda scene: shifted(scene, 3, 0.0, -2.0, 0.4),
+    "some move here and there": shifted_here_and_there,
     "one grows": grown,
     "one has no place": lambda scene: edited(scene, 9, matrix=np.full((4, 4), np.nan)),
     "it has one again": lambda scene: edited(scene, 9, matrix=scenes.placed(0.0, -1.0, 0.2, 0.1)),

@@ -209,3 +209,24 @@ def test_too_many_triangles_are_named(context, geometry, monkeypatch):
     said = f"world triangles needs .*Simplify .*of {10 * each} triangles, .* {most}"
     with pytest.raises(DeviceError, match=said):
         geometry.build(scene, 1)
+
+
+def test_what_a_failed_build_has_lost_is_gathered_again(context, geometry, monkeypatch):
+    """Where there was room for world triangles, but not for their attributes."""
+    ball = scenes.sphere("ball", 9, 5)
+    few = Scene(CAMERA, [ball], turned_instances(np.random.default_rng(5), 2), [scenes.diffuse(1, 1, 1)])
+    many = dataclasses.replace(few, camera=dataclasses.replace(CAMERA, width=256, height=256))
+
+    def in_object_space() -> bytes:
+        geometry.build(few, 0, instanced=lambda columns: np.ones(len(columns.meshes), bool))
+        first, count = geometry.instanced.mesh_first_triangles[0], ball.triangle_count
+        return geometry.triangles.read(np.float32, 12 * count, 48 * first).tobytes()
+
+    before = in_object_space()
+    with monkeypatch.context() as patched:
+        whole = context.storage_block_limit
+        held = property(lambda buffer: buffer.size if buffer is geometry.attributes else whole)
+        patched.setattr(GrowingBuffer, "limit", held)
+        with pytest.raises(DeviceError, match="triangle attributes needs"):
+            geometry.build(many, 0, instanced=lambda columns: np.ones(len(columns.meshes), bool))
+    assert in_object_space() == before

@@ -4,6 +4,7 @@
 import dataclasses
 
 import numpy as np
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common.instance_columns import InstanceColumns
 from rppm_addon.scene import Instance, RayVisibility
@@ -38,3 +39,11 @@ def test_only_other_objects_are_read_again():
     np.testing.assert_array_equal(columns.follow(edited[:3]), [0, 1, 2])
     np.testing.assert_array_equal(columns.follow([]), [])
     assert columns.matrices.shape == (0, 4, 4)
+
+
+def test_instances_with_any_material_that_emits_glow():
+    lobes = Lobe(LobeKind.DIFFUSE), Lobe(LobeKind.EMISSION, color=(1.0, 1.0, 1.0)), Lobe(LobeKind.DIFFUSE)
+    columns = InstanceColumns()
+    columns.follow([Instance(0, np.eye(4), slots) for slots in ([0, 2], [], [2, 1], [-1, 1], [7])])
+    materials = [material(str(number), lobe) for number, lobe in enumerate(lobes)]
+    np.testing.assert_array_equal(columns.glow(materials), [False, False, True, True, False])
