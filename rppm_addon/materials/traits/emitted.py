@@ -79,8 +79,8 @@ _OUTPUTS_OF_MESH = {
 
 
 def emits_alike(graph: NodeGraph) -> bool:
-    """Whether all instances of a mesh emit the same light from each of its places, as far as the nodes show: none ask
-    for the object, the instance or the place in the world."""
+    """Return True where all instances of a mesh emit the same light from each of its places, as far as the nodes show:
+    none ask for the object, the instance or the place in the world."""
     asked = surface_outputs(graph)
     return all(
         kind in _OF_MESH or (kind, output) in _OUTPUTS_OF_MESH or _shades(kind) for kind, output in asked
