@@ -12,7 +12,7 @@ from ....scene.scene import Scene
 from ...surfaces.geometry import Geometry
 from ..light_records import EMISSIVE_TRIANGLE, EmitterTrait
 from ..light_tree import leaf_numbers, morton_order, tree_of, triangle_leaves
-from .candidates import EmissiveMaterials, areas_of, chances, is_seen_reflected
+from .candidates import STEPS, EmissiveMaterials, areas_of, chances, is_seen_reflected
 
 Ask = Callable[[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 """Returns the radiance (n, 3) of triangles of an instance: its placement, the triangles (n,), their corners (n, 3, 3)
@@ -45,13 +45,13 @@ def mesh_emitters(records: np.ndarray, corners: np.ndarray, sides: int) -> MeshE
     leaves = triangle_leaves(records[bright], corners[bright])
     leaves["member"], leaves["light_sets"] = bright, 0xFFFFFFFF
     order = morton_order(leaves)
-    records["triangle"] = records["probability"] = 0
+    records["triangle"] = 0
     steps = np.zeros(len(records))
     if len(bright):
         steps[bright] = chances(weights)
         records["triangle"][bright] = leaf_numbers(order)
-    records["probability"] = steps / (1 << 24)
-    records["cumulated"] = np.cumsum(steps) / (1 << 24)
+    records["probability"] = steps / STEPS
+    records["cumulated"] = np.cumsum(steps) / STEPS
     axes = leaves["axis"].astype(np.float64)
     total = max(weights.sum(), 1e-300)
     return MeshEmitters(
