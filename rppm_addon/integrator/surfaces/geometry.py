@@ -282,8 +282,8 @@ class Geometry(BufferSet):
         placement's first slot."""
         self.instanced = None
         first = next_range(self.triangle_count)
-        has_emitters = bool(self._may_emit(scene)[placements].any())
-        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, has_emitters)
+        emitters = self._emitters_among(placements, scene)
+        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, len(emitters) > 0)
         mesh_of = which[placements]
         used = np.flatnonzero(np.bincount(mesh_of))
         one = np.zeros(len(meshes), np.int64)
@@ -308,7 +308,7 @@ class Geometry(BufferSet):
             world,
             HitPlaces(self._hits.first, self._hits.count, self._hits.origins.buffer, self._hits.first_hits),
             self._gather_hits,
-            has_emitters,
+            emitters,
         )
 
     def _gather_hits(
@@ -322,10 +322,12 @@ class Geometry(BufferSet):
         outputs = self.triangles, self.attributes
         self._hits.gather(numbers, kind, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
 
-    def _may_emit(self, scene: Scene) -> np.ndarray:
-        """(placements,) bool, those with a material that may emit light."""
+    def _emitters_among(self, placements: np.ndarray, scene: Scene) -> np.ndarray:
+        """(k,) int64, ascending, the places of those among placements (n,) with a material that may emit light."""
+        if not len(placements):
+            return placements
         glowing = {m for m, material in enumerate(scene.materials) if emits(material.graph) is not Emits.NOTHING}
-        return self.columns.have(glowing)[require(self._placed_of).chosen]
+        return np.flatnonzero(self.columns.have(glowing)[require(self._placed_of).chosen[placements]])
 
     def listed_parts(self, count: int) -> list[slice]:
         """Parts of so many triangles that gather_listed takes at a time."""

@@ -88,10 +88,9 @@ class EmissiveMeshes:
         found: list[MeshEmitters] = []
         places: dict[tuple, int] = {}
         which = np.full(len(instanced.placements), -1, np.int64)
-        for number, placement in enumerate(instanced.placements.tolist()):
-            instance = geometry.placements[placement].instance
-            if not glowing.are_on(instance):
-                continue
+        for number in instanced.emitters.tolist():
+            placement = int(instanced.placements[number])
+            instance = geometry.placements.instances[placement]
             key = instance.mesh, tuple(instance.materials), is_seen_reflected(instance)
             if key not in places:
                 sources = scene.meshes[instance.mesh], *(scene.materials[m] for m in glowing.known(instance))
