@@ -13,9 +13,10 @@ from support.lobes import Lobe, LobeKind, material
 from test_light_choice import CHOICES, SHADER, run
 from test_light_sources import floor_scene
 
-from rppm_addon.integrator.lights.emitters import meshes
+from rppm_addon.integrator.lights.emitters import candidates, meshes
 from rppm_addon.integrator.lights.emitters.instances import INSTANCED_EMITTERS
 from rppm_addon.scene import AccelerationStructure, DirectLight, Instance, Instancing, Scene, World
+from rppm_addon.scene.errors import DeviceError
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
@@ -219,6 +220,22 @@ def test_what_is_linked_is_expanded(mapper):
     mapper.build(scene)
     assert len(emitters_of(mapper).instances.leaves) == 19
     assert emitters_of(mapper).count == scene.meshes[1].triangle_count
+
+
+def test_instances_that_emit_nothing_are_no_emitters(mapper, monkeypatch):
+    """They take no places among those that can be chosen from."""
+    scene = glowing(20, others=False)
+    dense = scenes.sphere("dense", 32, 16)
+    scene.meshes.append(dense)
+    scene.instances += [Instance(len(scene.meshes) - 1, matrix, [0], "dense") for matrix in matrices(4)]
+    ball = scene.meshes[1].triangle_count
+    assert 20 + ball < dense.triangle_count
+    monkeypatch.setattr(candidates, "STEPS", 20 + ball)
+    mapper.build(scene)
+    assert len(emitters_of(mapper).instances.leaves) == 20
+    monkeypatch.setattr(candidates, "STEPS", 20 + ball - 1)
+    with pytest.raises(DeviceError, match="can emit light"):
+        mapper.build(scene)
 
 
 def test_memory_does_not_grow_with_the_triangles_of_emissive_instances(mapper):

@@ -94,8 +94,10 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
         refuse(count)
 
     of_instances = 0
-    if geometry.instanced is not None and geometry.instanced.has_emitters:
-        of_instances = len(geometry.instanced.placements) + geometry.instanced.triangle_count
+    if geometry.instanced is not None:
+        shining = np.unique(geometry.instanced.which[geometry.instanced.emitters]).tolist()
+        triangles = sum(geometry.instanced.meshes[mesh].triangle_count for mesh in shining)
+        of_instances = len(geometry.instanced.emitters) + triangles
     with contextlib.suppress(DeviceError):
         return judge(geometry.triangle_count + of_instances)
     glowing = EmissiveMaterials(scene, materials)
