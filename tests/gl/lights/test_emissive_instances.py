@@ -205,6 +205,27 @@ def test_moving_an_instance_asks_no_material_again(mapper, monkeypatch):
     assert len(box) == 20
 
 
+def test_slots_without_a_material_keep_their_places(mapper):
+    """Instances of a mesh that glow on other triangles each still do so after one has moved."""
+    scene = glowing(4, others=False)
+    slots = np.arange(scene.meshes[1].triangle_count, dtype=np.int32) % 2
+    scene.meshes[1] = dataclasses.replace(scene.meshes[1], triangle_slots=slots)
+    glows = scene.instances[1].materials[0]
+    of_slots = [[glows, -1], [-1, glows]] * 2
+    scene.instances[1:] = map(
+        lambda instance, materials: dataclasses.replace(instance, materials=materials), scene.instances[1:], of_slots
+    )
+
+    def lit() -> list[np.ndarray]:
+        return [mesh.records["radiance"].any(axis=1) for mesh in emitters_of(mapper).instances.meshes]
+
+    mapper.build(scene)
+    np.testing.assert_array_equal(lit(), [slots == 0, slots == 1])
+    moved = dataclasses.replace(scene.instances[4], matrix=scenes.placed(0.0, 0.0, 1.0, 0.1))
+    mapper.update(dataclasses.replace(scene, instances=[*scene.instances[:4], moved]))
+    np.testing.assert_array_equal(lit(), [slots == 0, slots == 1])
+
+
 def test_instances_that_lie_nowhere_emit_nothing(mapper):
     scene = glowing(20, others=False)
     for number, matrix in enumerate([np.full((4, 4), np.nan), scenes.placed(0.0, 0.0, 1.0, 1e20), np.zeros((4, 4))]):

@@ -67,8 +67,8 @@ class EmissiveMeshes:
 
     def __init__(self) -> None:
         self._known: dict[tuple, tuple[tuple, MeshEmitters]] = {}
-        """By the ids of a mesh and its materials, and whether smooth surfaces look for it: these, which keeps the ids
-        theirs, and the emitters."""
+        """By the ids of a mesh and of the materials of its slots, and whether smooth surfaces look for it: these, which
+        keeps the ids theirs, and the emitters."""
 
     def forget(self) -> None:
         """Find all anew, as materials emit otherwise."""
@@ -93,7 +93,7 @@ class EmissiveMeshes:
             instance = geometry.placements.instances[placement]
             key = instance.mesh, tuple(instance.materials), is_seen_reflected(instance)
             if key not in places:
-                sources = scene.meshes[instance.mesh], *(scene.materials[m] for m in glowing.known(instance))
+                sources = scene.meshes[instance.mesh], *glowing.of_slots(instance)
                 source_key = *map(id, sources), is_seen_reflected(instance)
                 _, emitters = known.get(source_key) or (None, _find(scene, placement, instance, glowing, ask))
                 self._known[source_key] = sources, emitters
