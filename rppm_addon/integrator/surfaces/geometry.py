@@ -221,8 +221,8 @@ class Geometry(BufferSet):
         for number in are_inset.tolist():
             matrices[number] = inset_matrix(matrices[number], boxes[number], number)
         has_pivots = scene.world_origin is not None
-        of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
-        self.placed.take(matrices, boxes, has_pivots, _among(chosen, read) if of.keeps_rows(before) else None)
+        of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, are_inset)
+        self.placed.take(matrices, boxes, has_pivots, of.changed_since(before, read))
         self._placed_of = of
         return of
 
@@ -423,13 +423,6 @@ def _place_slots(
         slots += [m if m in known else default_material for m in key] or [default_material]
     entries["first_slot"], entries["slot_count"] = ranges[:, 0][numbers], ranges[:, 1][numbers]
     return np.array(slots, np.uint32)
-
-
-def _among(indices: np.ndarray, some: np.ndarray) -> np.ndarray:
-    """(n,) the places of those indices that are among some, both ascending."""
-    places = np.searchsorted(indices, some)
-    places = places[places < len(indices)]
-    return places[np.isin(indices[places], some)]
 
 
 def _as_slice(indices: np.ndarray) -> np.ndarray | slice:
