@@ -103,7 +103,7 @@ def trace_photons(context: StageContext, stages: StageSet, iteration: Iteration)
 def store_photons(context: StageContext, stages: StageSet, learning: Learning, iteration: Iteration) -> Radii:
     """Offer the photons that were stored to the importons; returns the radii within which these take them."""
     estimator = stages.density_estimator
-    listed = stages.photons.list_stored(context, estimator.photon_list, iteration)
+    listed = stages.photons.list_stored(context, estimator.photon_list)
     radii = learning.radii_for(iteration, listed)
     context.iteration_block.write_radii(radii)
     stages.medium_photons.build(context, stages.photons, iteration, stages.media.volume, stages.media.reach)

@@ -17,17 +17,15 @@ HEIGHT, HALF, HOLE = 1.0, 1.0, 0.25
 """Height of the room, half of its width, and half of the width of the square hole in its ceiling, meters."""
 
 
-def room(walls: np.ndarray, hole: float = HOLE, **settings: object) -> Scene:
+def room(walls: np.ndarray, **settings: object) -> Scene:
     """A floor under a ceiling with a hole, between walls of one color, in a white world, seen from within."""
-    a, b, h = HALF, hole, HEIGHT
+    a, b, h = HALF, HOLE, HEIGHT
     corners = [(-a, -a), (a, -a), (a, a), (-a, a)]
     sides = zip(corners, [*corners[1:], corners[0]], strict=True)
     meshes = [scenes.rectangle("wall", (*p, 0), (*q, 0), (*q, h), (*p, h)) for p, q in sides]
-    if hole < a:
-        ceiling = [((-a, -a), (a, -b)), ((-a, b), (a, a))]
-        ceiling += [((-a, -b), (-b, b)), ((b, -b), (a, b))] if b else []
-        for (x0, y0), (x1, y1) in ceiling:
-            meshes.append(scenes.rectangle("ceiling", (x0, y0, h), (x1, y0, h), (x1, y1, h), (x0, y1, h)))
+    ceiling = [((-a, -a), (a, -b)), ((-a, b), (a, a)), ((-a, -b), (-b, b)), ((b, -b), (a, b))]
+    for (x0, y0), (x1, y1) in ceiling:
+        meshes.append(scenes.rectangle("ceiling", (x0, y0, h), (x1, y0, h), (x1, y1, h), (x0, y1, h)))
     shared = {"iterations": 6, "photons": 1 << 16, "photon_path_length": 4, "camera_path_length": 4}
     shared |= {"filter_width": 0.0, "radius_minimum": 0.05, "radius_maximum": 0.05}
     camera, floor = view((-0.4, 0.0, 0.7), (0.0, 0.0, 0.0), 0.2), scenes.square("floor", a)
@@ -55,12 +53,11 @@ def hole_form_factor(scene: Scene) -> np.ndarray:
     return corner(right, top) - corner(left, top) - corner(right, bottom) + corner(left, bottom)
 
 
-def uneven_sky(sun: bool) -> Image:
-    """Clouds of one brightness or another, and a sun seen through the hole."""
+def uneven_sky() -> Image:
+    """Clouds of different brightness, and a sun seen through the hole."""
     pixels = np.random.default_rng(3).uniform(0.0, 1.0, (8, 16, 4)).astype(np.float32) * 3.0
-    if sun:
-        pixels = np.repeat(np.repeat(pixels, 16, 0), 16, 1)
-        pixels[116:120, 88:92] = 500.0
+    pixels = np.repeat(np.repeat(pixels, 16, 0), 16, 1)
+    pixels[116:120, 88:92] = 500.0
     return Image("world", pixels)
 
 

@@ -153,8 +153,13 @@ class InstancedMeshes:
     gather_hits: Callable[[moderngl.Buffer, HitNumbers, ActivePaths, HitPaths, Mapping[str, Bindable]], None]
     """Makes world triangles of those that a buffer names for active paths of a list, by the acceleration structure's
     blocks."""
-    has_emitters: bool
-    """True where any of the instances may emit light."""
+    emitters: np.ndarray
+    """(k,) int64, the rows of instances that may emit light, ascending."""
+
+    @property
+    def has_emitters(self) -> bool:
+        """True where any of the instances may emit light."""
+        return len(self.emitters) > 0
 
     def has_rows_of(self, before: "InstancedMeshes") -> bool:
         """True where the rows are those of the same instances, with the same meshes at the same places."""

@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...materials.traits.emitted import Emits, emits
 from ...scene.light_linking import LightLinking
-from ...scene.materials import Material
 from ...scene.meshes import Instance
 from ...scene.storage.sharing import changed_members
 
@@ -66,10 +64,6 @@ class InstanceColumns:
         """(n,) bool, the instances with any of these materials."""
         lists = np.array([not materials.isdisjoint(of_slots) for of_slots in self.material_lists], bool)
         return lists[self.materials]
-
-    def glow(self, materials: Sequence[Material]) -> np.ndarray:
-        """(n,) bool, the instances with any material, of those of the scene, that may emit light."""
-        return self.have({place for place, one in enumerate(materials) if emits(one.graph) is not Emits.NOTHING})
 
 
 def column(members: Sequence, name: str, dtype: type, of_value: Callable[[Any], float] | None = None) -> np.ndarray:

@@ -3,9 +3,8 @@
 
 import numpy as np
 
-from ...materials.traits.emitted import Emits, emits, emits_alike
+from ...materials.traits.emitted import emits_alike, glowing_materials
 from ...materials.traits.node_rays import traces_rays
-from ...scene.materials import Material
 from ...scene.meshes import Instance
 from ...scene.passes import DEEP_CUBEMAP, VECTOR
 from ...scene.scene import Scene
@@ -65,8 +64,9 @@ def instanced_members(
     is_automatic, total = wanted is Instancing.AUTOMATIC, lengths[meshes].sum() if len(meshes) else 0
     if not total or (is_automatic and total < MANY_TRIANGLES):
         return None
-    glows = columns.glow(scene.materials)
-    may_be = _may_be_instanced(scene, columns)
+    glowing = glowing_materials(scene.materials)
+    glows = columns.have(glowing)
+    may_be = _may_be_instanced(scene, columns, glowing)
     if glows.any():
         may_be &= ~glows | _may_share_emitters(scene, columns)
     counts = np.bincount(meshes[may_be], minlength=len(scene.meshes))
@@ -78,9 +78,10 @@ def instanced_members(
     return chosen if chosen.any() else None
 
 
-def _may_be_instanced(scene: Scene, columns: InstanceColumns) -> np.ndarray:
-    """(instances,) bool."""
-    excluded = {index for index, material in enumerate(scene.materials) if _must_be_expanded(material)}
+def _may_be_instanced(scene: Scene, columns: InstanceColumns, glowing: set[int]) -> np.ndarray:
+    """(instances,) bool. glowing: the materials that emit light."""
+    excluded = {number for number in glowing if not emits_alike(scene.materials[number].graph)}
+    excluded |= {number for number, material in enumerate(scene.materials) if material.interior is not None}
     bending = {deformation.mesh for deformation in scene.shutter.meshes} if scene.shutter is not None else set()
     whole = np.array([index not in bending and mesh.volume is None for index, mesh in enumerate(scene.meshes)])
     return whole[columns.meshes] & ~columns.have(excluded)
@@ -106,11 +107,6 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
 
 def _has_media(scene: Scene) -> bool:
     return scene.world.volume is not None or any(material.interior is not None for material in scene.materials)
-
-
-def _must_be_expanded(material: Material) -> bool:
-    is_dark = emits(material.graph) is Emits.NOTHING
-    return material.interior is not None or not (is_dark or emits_alike(material.graph))
 
 
 def _may_share_emitters(scene: Scene, columns: InstanceColumns) -> np.ndarray:

@@ -75,10 +75,9 @@ def caustic_targets(scene: Scene, geometry: Geometry) -> np.ndarray:
         )
 
     casters = {index for index, material in enumerate(scene.materials) if is_aimed_at(material)}
-    spheres = []
-    for placement, (low, high) in zip(geometry.placements, geometry.boxes, strict=True) if casters else ():
-        if casters.isdisjoint(placement.instance.materials):
-            continue
+    placements, spheres = geometry.placements if casters else [], []
+    are_casters = [not casters.isdisjoint(placement.instance.materials) for placement in placements]
+    for low, high in np.asarray(geometry.boxes)[np.flatnonzero(are_casters)]:
         radius = 0.5 * float(np.linalg.norm(high - low))
         if np.isfinite(radius) and 0 < radius < _LARGEST * geometry.radius:
             spheres.append([*(0.5 * (low + high)), radius])

@@ -24,7 +24,7 @@ _SLACK = 1e-5
 
 class LightTree(BufferSet):
     """Nodes of two trees, of light objects and of emissive triangles, of the suns, and of the trees of meshes whose
-    instances are leaves of the second tree (emitter_instances.py), in one buffer.
+    instances are leaves of the second tree (emitters/instances.py), in one buffer.
 
     Each tree's root is node 1 behind its first; ``parameters`` are the values of LIGHT_TREE_PARAMETERS.
     """

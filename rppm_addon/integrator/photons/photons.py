@@ -190,7 +190,7 @@ class Photons(Stage):
         self.photons.extend_items(self.slots)
         self._begin.run(1, {**self.blocks, "ActivePaths": self._active.buffer}, {"segment": segment})
 
-    def list_stored(self, context: StageContext, listed: PhotonList, iteration: Iteration) -> PhotonList:
+    def list_stored(self, context: StageContext, listed: PhotonList) -> PhotonList:
         """List the photons that importons may take. Where shadow rays find direct light, direct ones would count it
         twice."""
         takes_direct = context.settings.direct_light is DirectLight.PHOTONS

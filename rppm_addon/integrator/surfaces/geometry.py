@@ -15,6 +15,7 @@ from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.program import Bindable
 from ...gl.programs.programs import ProgramLibrary
+from ...materials.traits.emitted import glowing_materials
 from ...scene.errors import DeviceError, DeviceLostError
 from ...scene.meshes import Instance, Mesh, MeshShape, RayVisibility
 from ...scene.scene import Scene
@@ -221,9 +222,8 @@ class Geometry(BufferSet):
         for number in are_inset.tolist():
             matrices[number] = inset_matrix(matrices[number], boxes[which[number]], number)
         has_pivots = scene.world_origin is not None
-        of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, bool(len(are_inset)))
-        changed = _among(chosen, read) if of.keeps_rows(before) else None
-        self.placed.take(matrices, boxes, which, has_pivots, changed)
+        of = PlacedMeshes(instances, chosen, meshes, bounds, which, has_pivots, are_inset)
+        self.placed.take(matrices, boxes, which, has_pivots, of.changed_since(before, read))
         self._placed_of = of
         return of
 
@@ -283,9 +283,8 @@ class Geometry(BufferSet):
         placement's first slot."""
         self.instanced = None
         first = next_range(self.triangle_count)
-        glow = self.columns.glow(scene.materials)[require(self._placed_of).chosen]
-        has_emitters = bool(glow[placements].any())
-        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, has_emitters)
+        emitters = self._emitters_among(placements, scene)
+        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, len(emitters) > 0)
         mesh_of = which[placements]
         used = np.flatnonzero(np.bincount(mesh_of))
         one = np.zeros(len(meshes), np.int64)
@@ -310,7 +309,7 @@ class Geometry(BufferSet):
             world,
             HitPlaces(self._hits.first, self._hits.count, self._hits.origins.buffer, self._hits.first_hits),
             self._gather_hits,
-            has_emitters,
+            emitters,
         )
 
     def _gather_hits(
@@ -323,6 +322,13 @@ class Geometry(BufferSet):
     ) -> None:
         outputs = self.triangles, self.attributes
         self._hits.gather(numbers, kind, active, paths, {**self._inputs.blocks, **blocks}, outputs, self.center)
+
+    def _emitters_among(self, placements: np.ndarray, scene: Scene) -> np.ndarray:
+        """(k,) int64, ascending, the places of those among placements (n,) with a material that may emit light."""
+        if not len(placements):
+            return placements
+        glow = self.columns.have(glowing_materials(scene.materials))
+        return np.flatnonzero(glow[require(self._placed_of).chosen[placements]])
 
     def listed_parts(self, count: int) -> list[slice]:
         """Parts of so many triangles that gather_listed takes at a time."""
@@ -418,13 +424,6 @@ def _place_slots(
         slots += [m if m in known else default_material for m in key] or [default_material]
     entries["first_slot"], entries["slot_count"] = ranges[:, 0][numbers], ranges[:, 1][numbers]
     return np.array(slots, np.uint32)
-
-
-def _among(indices: np.ndarray, some: np.ndarray) -> np.ndarray:
-    """(n,) the places of those indices that are among some, both ascending."""
-    places = np.searchsorted(indices, some)
-    places = places[places < len(indices)]
-    return places[np.isin(indices[places], some)]
 
 
 def _as_slice(indices: np.ndarray) -> np.ndarray | slice:

@@ -68,15 +68,22 @@ class PlacedMeshes:
     """(n,) the mesh of each instance, by its place in ``meshes``."""
     has_pivots: bool
     """The scene is far from the world's origin."""
-    has_insets: bool
-    """Some are drawn together (volume_insets.py), which their matrices do not say."""
+    insets: np.ndarray
+    """(k,) the rows of those that are drawn together (volume_insets.py), which their matrices do not say."""
 
-    def keeps_rows(self, before: "PlacedMeshes | None") -> bool:
-        """True where rows of instances that have not changed stay as they were made of those before."""
+    def changed_since(self, before: "PlacedMeshes | None", read: np.ndarray) -> np.ndarray | None:
+        """(k,) the rows that may not be as they were made of those before, ascending; None for all. ``read``: the
+        instances of the scene that have changed, ascending."""
+        if before is None or not self._keeps_rows(before):
+            return None
+        places = np.searchsorted(self.chosen, read)
+        places = places[places < len(self.chosen)]
+        places = places[np.isin(self.chosen[places], read)]
+        return np.unique(np.concatenate([places, self.insets, before.insets]))
+
+    def _keeps_rows(self, before: "PlacedMeshes") -> bool:
         return (
-            before is not None
-            and not (self.has_insets or before.has_insets)
-            and self.has_pivots == before.has_pivots
+            self.has_pivots == before.has_pivots
             and same_members(self.bounds, before.bounds)
             and np.array_equal(self.chosen, before.chosen)
             and np.array_equal(self.which, before.which)

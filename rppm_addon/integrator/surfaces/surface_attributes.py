@@ -14,7 +14,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ...scene.light_linking import ALL_SETS
 from ...scene.meshes import AttributeDomain, Instance, Mesh, MeshAttribute, MeshShape
 from ...scene.scene import Scene
-from ...scene.storage.sharing import changed_members, same_members
+from ...scene.storage.sharing import same_members
 from ..acceleration.instance_records import runs
 from ..common.affine import affine_inverses
 from ..common.records.closures import TERMINATOR_SHIFT, TERMINATOR_STEPS
@@ -88,8 +88,9 @@ class SurfaceAttributes(BufferSet):
         self._have_terminators = np.zeros(0, bool)
         """(instances,) those that have one."""
         self._meshes: list[Mesh] = []
-        self._written: list[Instance] = []
-        """Meshes and instances of the records on the device."""
+        """Meshes of the records on the device."""
+        self._version = -1
+        """PlacedArrays.version of these; below all where they are not known."""
         self._sources: dict[int, tuple] = {}
         """Arrays and settings from which the values were made, by the place of these in the buffer."""
 
@@ -105,14 +106,12 @@ class SurfaceAttributes(BufferSet):
         self._upload_values(scene.meshes, instances, turned, names)
 
     def _write_records(self, meshes: list[Mesh], instances: list[Instance], placed: PlacedArrays) -> None:
-        """Write the records of instances that are not the very objects of the last time at their places."""
-        before, self._written = self._written, []  # should an upload fail
-        is_new = self._instances.require_items(max(1, len(instances)))
-        stays = not is_new and same_members(meshes, self._meshes)  # whose box a record has as well
-        rows = np.arange(len(instances))
-        if stays and len(before) == len(instances):
-            rows = changed_members(before, instances)
-        else:
+        """Write the records of the instances whose rows are not as they were the last time."""
+        before, self._version = self._version, -1  # should an upload fail
+        if self._instances.require_items(max(1, len(instances))) or not same_members(meshes, self._meshes):
+            before = -1  # a record has the box of a mesh as well
+        rows = np.flatnonzero(placed.versions > before)
+        if len(rows) == len(instances):
             self._have_terminators = np.zeros(len(instances), bool)
         for part in runs(rows, _AT_ONCE):
             records = SHADING_INSTANCE.zeros(len(part))
@@ -123,7 +122,7 @@ class SurfaceAttributes(BufferSet):
         if not instances:
             self._instances.write(SHADING_INSTANCE.zeros(1))
         self.has_terminators = bool(self._have_terminators.any())
-        self._meshes, self._written = list(meshes), list(instances)
+        self._meshes, self._version = list(meshes), placed.version
 
     def _upload_values(
         self, meshes: list[Mesh], instances: list[Instance], turned: list[bool], names: list[str]

@@ -2,11 +2,13 @@
 """Emission of node graphs."""
 
 import enum
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ...scene.materials import Material
 from ...scene.node_graphs import Link, NodeGraph, ShaderNode
 from ..nodes import KINDS
 
@@ -62,6 +64,11 @@ def emits(graph: NodeGraph) -> Emits:
     return Emits.VARYING if varying else Emits.EVENLY
 
 
+def glowing_materials(materials: Sequence[Material]) -> set[int]:
+    """Places of the materials that may emit light."""
+    return {place for place, material in enumerate(materials) if emits(material.graph) is not Emits.NOTHING}
+
+
 def asks_for_path(graph: NodeGraph) -> bool:
     """Whether the surface depends on what kind of ray comes to it, or from how far."""
     return any(graph.nodes[index].kind == "light_path" for index in reachable(graph, graph.surface))
@@ -79,8 +86,8 @@ _OUTPUTS_OF_MESH = {
 
 
 def emits_alike(graph: NodeGraph) -> bool:
-    """Whether all instances of a mesh emit the same light from each of its places, as far as the nodes show: none ask
-    for the object, the instance or the place in the world."""
+    """Return True where all instances of a mesh emit the same light from each of its places, as far as the nodes show:
+    none ask for the object, the instance or the place in the world."""
     asked = surface_outputs(graph)
     return all(
         kind in _OF_MESH or (kind, output) in _OUTPUTS_OF_MESH or _shades(kind) for kind, output in asked

@@ -11,7 +11,11 @@ from rendering import radiance_of
 
 from rppm_addon.integrator.bvh import leaves
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
+from rppm_addon.integrator.surfaces.geometry import Geometry
+from rppm_addon.integrator.surfaces.surface_attributes import SHADING_INSTANCE, SurfaceAttributes
 from rppm_addon.scene import AccelerationStructure, Instance, Instancing, RayVisibility, Scene
+from rppm_addon.scene.materials import Material
+from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
 from rppm_addon.self_test.meshes import rectangle
 
 COUNT = 4200
@@ -130,6 +134,33 @@ def test_far_scenes_are_edited_as_near_ones(mapper, other_mapper):
     for name in ("one moves", "one grows", "one has another mesh", "some are deleted"):
         scene = EDITS[name](scene)
         assert_like_a_fresh_one(mapper, other_mapper, scene, name)
+
+
+def volume() -> Material:
+    graph = NodeGraph([ShaderNode("volume_absorption")], surface=Link(0, "volume"))
+    return Material("volume", NodeGraph([ShaderNode("volume_boundary")], surface=Link(0, "bsdf")), graph)
+
+
+def test_nodes_see_volumes_where_they_lie_in_a_new_scene(context, library):
+    """Volumes are drawn together, which their instances do not say: these are the same as before."""
+
+    def seen(scene: Scene, geometry: Geometry, attributes: SurfaceAttributes) -> np.ndarray:
+        geometry.build(scene, 0)
+        attributes.build(scene, geometry, [])
+        found = attributes.blocks["ShadingInstances"].read(len(scene.instances) * SHADING_INSTANCE.size)
+        return np.frombuffer(found, SHADING_INSTANCE.dtype)["to_object0"].copy()
+
+    def parts() -> tuple[Geometry, SurfaceAttributes]:
+        return Geometry(context, library), SurfaceAttributes(context, library)
+
+    solid = scenes.room(16)
+    scenes.add(solid, scenes.box("body", 0.3), solid.materials[0], scenes.placed(0.1, 0.1, 0.4, 1.0))
+    filled = dataclasses.replace(solid, materials=[*solid.materials[:-1], volume()])
+    kept, found = parts(), []
+    for scene in (solid, filled, shifted(filled, 1, 0.1, 0.0, 0.0), shifted(filled, 2, 0.1, 0.0, 0.0), solid):
+        found.append(seen(scene, *kept))
+        np.testing.assert_array_equal(found[-1], seen(scene, *parts()))
+    assert (found[0][-1] != found[1][-1]).any()
 
 
 def test_what_rests_is_not_sorted_again(mapper, monkeypatch):

@@ -13,9 +13,10 @@ from support.lobes import Lobe, LobeKind, material
 from test_light_choice import CHOICES, SHADER, run
 from test_light_sources import floor_scene
 
-from rppm_addon.integrator.lights.emitters import meshes
+from rppm_addon.integrator.lights.emitters import candidates, meshes
 from rppm_addon.integrator.lights.emitters.instances import INSTANCED_EMITTERS
 from rppm_addon.scene import AccelerationStructure, DirectLight, Instance, Instancing, Scene, World
+from rppm_addon.scene.errors import DeviceError
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
@@ -204,6 +205,27 @@ def test_moving_an_instance_asks_no_material_again(mapper, monkeypatch):
     assert len(box) == 20
 
 
+def test_slots_without_a_material_keep_their_places(mapper):
+    """Instances of a mesh that glow on other triangles each still do so after one has moved."""
+    scene = glowing(4, others=False)
+    slots = np.arange(scene.meshes[1].triangle_count, dtype=np.int32) % 2
+    scene.meshes[1] = dataclasses.replace(scene.meshes[1], triangle_slots=slots)
+    glows = scene.instances[1].materials[0]
+    of_slots = [[glows, -1], [-1, glows]] * 2
+    scene.instances[1:] = map(
+        lambda instance, materials: dataclasses.replace(instance, materials=materials), scene.instances[1:], of_slots
+    )
+
+    def lit() -> list[np.ndarray]:
+        return [mesh.records["radiance"].any(axis=1) for mesh in emitters_of(mapper).instances.meshes]
+
+    mapper.build(scene)
+    np.testing.assert_array_equal(lit(), [slots == 0, slots == 1])
+    moved = dataclasses.replace(scene.instances[4], matrix=scenes.placed(0.0, 0.0, 1.0, 0.1))
+    mapper.update(dataclasses.replace(scene, instances=[*scene.instances[:4], moved]))
+    np.testing.assert_array_equal(lit(), [slots == 0, slots == 1])
+
+
 def test_instances_that_lie_nowhere_emit_nothing(mapper):
     scene = glowing(20, others=False)
     for number, matrix in enumerate([np.full((4, 4), np.nan), scenes.placed(0.0, 0.0, 1.0, 1e20), np.zeros((4, 4))]):
@@ -219,6 +241,22 @@ def test_what_is_linked_is_expanded(mapper):
     mapper.build(scene)
     assert len(emitters_of(mapper).instances.leaves) == 19
     assert emitters_of(mapper).count == scene.meshes[1].triangle_count
+
+
+def test_instances_that_emit_nothing_are_no_emitters(mapper, monkeypatch):
+    """They take no places among those that can be chosen from."""
+    scene = glowing(20, others=False)
+    dense = scenes.sphere("dense", 32, 16)
+    scene.meshes.append(dense)
+    scene.instances += [Instance(len(scene.meshes) - 1, matrix, [0], "dense") for matrix in matrices(4)]
+    ball = scene.meshes[1].triangle_count
+    assert 20 + ball < dense.triangle_count
+    monkeypatch.setattr(candidates, "STEPS", 20 + ball)
+    mapper.build(scene)
+    assert len(emitters_of(mapper).instances.leaves) == 20
+    monkeypatch.setattr(candidates, "STEPS", 20 + ball - 1)
+    with pytest.raises(DeviceError, match="can emit light"):
+        mapper.build(scene)
 
 
 def test_memory_does_not_grow_with_the_triangles_of_emissive_instances(mapper):

@@ -46,7 +46,7 @@ def with_portals(name: str, sky: bool = False, **settings: object) -> Scene:
     scene = room(BLACK, **settings)
     scene.lights = PORTALS[name]
     if sky:
-        scene.images, scene.world = [uneven_sky(True)], image_world(0)
+        scene.images, scene.world = [uneven_sky()], image_world(0)
     return scene
 
 

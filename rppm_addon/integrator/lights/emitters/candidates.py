@@ -10,6 +10,7 @@ from numpy.typing import DTypeLike
 from ....materials.tables import MaterialTables
 from ....materials.traits.emitted import Emits, asks_for_path
 from ....scene.errors import DeviceError
+from ....scene.materials import Material
 from ....scene.meshes import Instance, MeshShape, RayVisibility
 from ....scene.scene import Scene
 from ...surfaces.geometry import Geometry, objects_of_most
@@ -28,6 +29,7 @@ class EmissiveMaterials:
     """Materials of a scene that may emit light."""
 
     def __init__(self, scene: Scene, materials: MaterialTables) -> None:
+        self._materials = scene.materials
         self._emits, self._count = materials.emits, len(scene.materials)
         self._varies = np.array([emits is Emits.VARYING for emits in self._emits], bool)
         self._dark = {index for index in range(self._count) if self._emits[index] is Emits.NOTHING}
@@ -39,9 +41,9 @@ class EmissiveMaterials:
         """Return True where triangles of an instance may emit."""
         return not (instance.materials and self._dark.issuperset(instance.materials))
 
-    def known(self, instance: Instance) -> list[int]:
-        """Materials of an instance's slots, without those that the scene does not have."""
-        return [m for m in instance.materials if 0 <= m < self._count]
+    def of_slots(self, instance: Instance) -> list[Material | None]:
+        """Materials of an instance's slots, None where the scene does not have one."""
+        return [self._materials[m] if 0 <= m < self._count else None for m in instance.materials]
 
     def triangles_of(self, scene: Scene, instance: Instance) -> tuple[np.ndarray, np.ndarray]:
         """Materials of an instance's slots, -1 where there is none, and the mesh's triangles that may emit, by
@@ -94,8 +96,10 @@ def refuse_too_many(scene: Scene, geometry: Geometry, materials: MaterialTables,
         refuse(count)
 
     of_instances = 0
-    if geometry.instanced is not None and geometry.instanced.has_emitters:
-        of_instances = len(geometry.instanced.placements) + geometry.instanced.triangle_count
+    if geometry.instanced is not None:
+        shining = np.unique(geometry.instanced.which[geometry.instanced.emitters]).tolist()
+        triangles = sum(geometry.instanced.meshes[mesh].triangle_count for mesh in shining)
+        of_instances = len(geometry.instanced.emitters) + triangles
     with contextlib.suppress(DeviceError):
         return judge(geometry.triangle_count + of_instances)
     glowing = EmissiveMaterials(scene, materials)

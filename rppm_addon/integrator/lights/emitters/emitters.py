@@ -80,9 +80,8 @@ class Emitters(BufferSet):
     ) -> None:
         """Ask the materials of all triangles that may emit for their radiance; those that do not are left out."""
         records, corners, kinds, varying, traits, numbers, sides = candidates(scene, geometry, materials, links)
-        records["radiance"] = self._ask(
-            records["triangle"], corners, records["area"], kinds, varying, functools.partial(self._emission, resolve)
-        )
+        emission = functools.partial(self._emission, resolve)
+        records["radiance"] = self._ask(emission, records["triangle"], corners, records["area"], kinds, varying)
         bright = records["radiance"].any(axis=1)
         if not bright.all():  # where all are, none of these many bytes is copied
             records, corners, varying, traits, numbers, sides = (
@@ -126,18 +125,9 @@ class Emitters(BufferSet):
         self._leaf_numbers.upload(numbers if self.count else np.zeros(1, np.uint32))
 
     def _find_instances(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
-        def ask(
-            placement: int, which: np.ndarray, corners: np.ndarray, areas: np.ndarray, kinds: np.ndarray,
-            varying: np.ndarray,
-        ) -> np.ndarray:  # fmt: skip
-            def emission(triangles: np.ndarray, corners: np.ndarray, points: int) -> np.ndarray:
-                parts = [
-                    self._emission(resolve, geometry.gather_listed(placement, triangles[part]), corners[part], points)
-                    for part in geometry.listed_parts(len(triangles))
-                ]
-                return np.concatenate(parts) if parts else np.zeros((0, 3))
-
-            return self._ask(which, corners, areas, kinds, varying, emission)
+        def ask(placement: int, *columns: np.ndarray) -> np.ndarray:
+            emission = functools.partial(self._emission_of_instance, resolve, geometry, placement)
+            return self._ask(emission, *columns)
 
         self.instances.place(geometry.instanced, *self.meshes.find(scene, geometry, materials, ask))
 
@@ -156,12 +146,12 @@ class Emitters(BufferSet):
 
     def _ask(
         self,
+        emission: Emission,
         triangles: np.ndarray,
         corners: np.ndarray,
         areas: np.ndarray,
         kinds: np.ndarray,
         varying: np.ndarray,
-        emission: Emission,
     ) -> np.ndarray:
         """(n, 3) radiance: one place is evaluated for each material that emits evenly, several for each triangle of the
         others."""
@@ -178,6 +168,22 @@ class Emitters(BufferSet):
                 mean = np.average(radiance[of_kind], axis=0, weights=areas[of_kind])
                 radiance[of_kind] = np.maximum(radiance[of_kind], _MIN_FRACTION * mean)
         return radiance
+
+    def _emission_of_instance(
+        self,
+        resolve: Resolve,
+        geometry: Geometry,
+        placement: int,
+        triangles: np.ndarray,
+        corners: np.ndarray,
+        points: int,
+    ) -> np.ndarray:
+        """As _emission, of triangles (n,) of the mesh of an instance that rays place in the world."""
+        parts = [
+            self._emission(resolve, geometry.gather_listed(placement, triangles[part]), corners[part], points)
+            for part in geometry.listed_parts(len(triangles))
+        ]
+        return np.concatenate(parts)
 
     def _emission(self, resolve: Resolve, triangles: np.ndarray, corners: np.ndarray, points: int) -> np.ndarray:
         """(n, 3) mean radiance at ``points`` places of each triangle, seen straight on."""

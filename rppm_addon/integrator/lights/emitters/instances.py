@@ -14,7 +14,6 @@ from ....gl.buffers.storage_blocks import StorageBlock
 from ....gl.context.context import Context
 from ....gl.programs.programs import ProgramLibrary
 from ...acceleration.instances import HitPaths, InstancedMeshes
-from ...common.affine import determinants
 from ...surfaces.gather_inputs import part_starts
 from ...surfaces.placements import FARTHEST
 from ..light_records import LIGHT_NODE
@@ -104,7 +103,7 @@ class EmitterInstances(BufferSet):
         for name in ("row0", "row1", "row2", "pivot", "set_code"):
             records[name] = instanced.entries[name]
         records["first_triangle"] = instanced.mesh_first_triangles[instanced.which]
-        records["mirrored"] = determinants(instanced.matrices) < 0.0
+        records["mirrored"] = instanced.are_mirrored
         for number, mesh in enumerate(meshes):
             is_of_mesh = self._which == number
             of_mesh = self._numbers[is_of_mesh]

@@ -12,7 +12,7 @@ from ....scene.scene import Scene
 from ...surfaces.geometry import Geometry
 from ..light_records import EMISSIVE_TRIANGLE, EmitterTrait
 from ..light_tree import leaf_numbers, morton_order, tree_of, triangle_leaves
-from .candidates import EmissiveMaterials, areas_of, chances, is_seen_reflected
+from .candidates import STEPS, EmissiveMaterials, areas_of, chances, is_seen_reflected
 
 Ask = Callable[[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 """Returns the radiance (n, 3) of triangles of an instance: its placement, the triangles (n,), their corners (n, 3, 3)
@@ -45,13 +45,13 @@ def mesh_emitters(records: np.ndarray, corners: np.ndarray, sides: int) -> MeshE
     leaves = triangle_leaves(records[bright], corners[bright])
     leaves["member"], leaves["light_sets"] = bright, 0xFFFFFFFF
     order = morton_order(leaves)
-    records["triangle"] = records["probability"] = 0
+    records["triangle"] = 0
     steps = np.zeros(len(records))
     if len(bright):
         steps[bright] = chances(weights)
         records["triangle"][bright] = leaf_numbers(order)
-    records["probability"] = steps / (1 << 24)
-    records["cumulated"] = np.cumsum(steps) / (1 << 24)
+    records["probability"] = steps / STEPS
+    records["cumulated"] = np.cumsum(steps) / STEPS
     axes = leaves["axis"].astype(np.float64)
     total = max(weights.sum(), 1e-300)
     return MeshEmitters(
@@ -67,8 +67,8 @@ class EmissiveMeshes:
 
     def __init__(self) -> None:
         self._known: dict[tuple, tuple[tuple, MeshEmitters]] = {}
-        """By the ids of a mesh and its materials, and whether smooth surfaces look for it: these, which keeps the ids
-        theirs, and the emitters."""
+        """By the ids of a mesh and of the materials of its slots, and whether smooth surfaces look for it: these, which
+        keeps the ids theirs, and the emitters."""
 
     def forget(self) -> None:
         """Find all anew, as materials emit otherwise."""
@@ -88,13 +88,12 @@ class EmissiveMeshes:
         found: list[MeshEmitters] = []
         places: dict[tuple, int] = {}
         which = np.full(len(instanced.placements), -1, np.int64)
-        for number, placement in enumerate(instanced.placements.tolist()):
-            instance = geometry.placements[placement].instance
-            if not glowing.are_on(instance):
-                continue
+        for number in instanced.emitters.tolist():
+            placement = int(instanced.placements[number])
+            instance = geometry.placements.instances[placement]
             key = instance.mesh, tuple(instance.materials), is_seen_reflected(instance)
             if key not in places:
-                sources = scene.meshes[instance.mesh], *(scene.materials[m] for m in glowing.known(instance))
+                sources = scene.meshes[instance.mesh], *glowing.of_slots(instance)
                 source_key = *map(id, sources), is_seen_reflected(instance)
                 _, emitters = known.get(source_key) or (None, _find(scene, placement, instance, glowing, ask))
                 self._known[source_key] = sources, emitters

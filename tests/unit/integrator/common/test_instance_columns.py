@@ -7,6 +7,7 @@ import numpy as np
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common.instance_columns import InstanceColumns
+from rppm_addon.materials.traits.emitted import glowing_materials
 from rppm_addon.scene import Instance, RayVisibility
 from rppm_addon.scene.light_linking import LightLinking
 
@@ -46,4 +47,4 @@ def test_instances_with_any_material_that_emits_glow():
     columns = InstanceColumns()
     columns.follow([Instance(0, np.eye(4), slots) for slots in ([0, 2], [], [2, 1], [-1, 1], [7])])
     materials = [material(str(number), lobe) for number, lobe in enumerate(lobes)]
-    np.testing.assert_array_equal(columns.glow(materials), [False, False, True, True, False])
+    np.testing.assert_array_equal(columns.have(glowing_materials(materials)), [False, False, True, True, False])
