@@ -4,7 +4,8 @@
     make bench-peers BENCH='--files ../scenes/bmw27.blend ../scenes/wild/loft.blend --seconds 5,20 --publish'
 
 Both renderers have the settings of make pairs. The reference is Cycles, whose two long runs with other seeds are kept
-in out/peers/files/; so a file with caustics that Cycles does not resolve is none for this comparison. Prints a table
+in out/peers/files/; so a file with caustics that Cycles does not resolve is none for this comparison. Pixels that show
+coincident faces do not count, since Cycles leaves these black or speckled. Prints a table
 and writes out/peers/files.json; --publish writes docs/benchmarks/plain_files.md. Let nothing else run on the machine.
 """
 
@@ -51,6 +52,8 @@ class Row:
     """From the start of the process to a first picture, loading and compiling included."""
     reference_noise: float
     """Relative mean square error that the reference has by its noise."""
+    left_out: float
+    """Fraction of the pixels that do not count, as they show coincident faces."""
 
 
 class FileComparison:
@@ -71,7 +74,8 @@ class FileComparison:
         make_file([*staging, self._resolution], staged, _LIMIT)
         make_file([sys.executable, "-m", "rppm_addon", "export", str(staged), "-o", str(exported)], exported, _LIMIT)
         files = {"cycles": staged, "rppm": exported}
-        reference, noise = self._reference(folder, staged)
+        counted = self._counted_pixels(exported, folder / "counted.npy")
+        reference, noise = self._reference(folder, staged, counted)
         exposure = exposure_of(reference)
         rows = []
         for name in COMPARED:
@@ -79,12 +83,18 @@ class FileComparison:
             answer = self._render(folder / name, method.adapter, files[method.adapter], method.options, self._seconds)
             for picture in answer.pictures:
                 pixels = picture.load()
-                errors = relative_mse(pixels, reference), flip(pixels, reference, exposure)
-                told = mean_ratio(pixels, reference), picture.samples, answer.first_picture_seconds, noise
-                rows.append(Row(source.stem, name, picture.mark, *errors, *told))
+                kept, true = pixels[counted], reference[counted]
+                errors = relative_mse(kept, true), flip(pixels, reference, exposure, counted)
+                told = mean_ratio(kept, true), picture.samples, answer.first_picture_seconds, noise
+                rows.append(Row(source.stem, name, picture.mark, *errors, *told, 1.0 - counted.mean()))
         return rows
 
-    def _reference(self, folder: Path, source: Path) -> tuple[np.ndarray, float]:
+    def _counted_pixels(self, exported: Path, path: Path) -> np.ndarray:
+        """(H, W) bool: False where a pixel, or one beside it, shows coincident faces."""
+        make_file([sys.executable, "-m", "benchmarks.peers.adapters.counted", str(exported), str(path)], path, _LIMIT)
+        return np.load(path)
+
+    def _reference(self, folder: Path, source: Path, counted: np.ndarray) -> tuple[np.ndarray, float]:
         """The mean of two long runs, and the relative mean square error that it has by their noise."""
         halves = []
         for seed in _REFERENCE_SEEDS:
@@ -94,7 +104,7 @@ class FileComparison:
                 continue
             answer = self._render(place, "cycles", source, {}, samples=[self._reference_samples], seed=seed)
             halves.append(answer.pictures[-1].load())
-        return 0.5 * (halves[0] + halves[1]), 0.25 * relative_mse(halves[0], halves[1])
+        return 0.5 * (halves[0] + halves[1]), 0.25 * relative_mse(halves[0][counted], halves[1][counted])
 
     def _render(
         self,
@@ -117,8 +127,8 @@ def table(rows: list[Row]) -> str:
     """Markdown: errors of both renderers for each file and time, and RPPM's over Cycles'."""
     lines = [
         "| file | seconds | RPPM, relMSE | Cycles | ratio | denoised: RPPM, FLIP | Cycles | ratio "
-        "| RPPM, relMSE | Cycles | mean | first picture, s | reference |",
-        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
+        "| RPPM, relMSE | Cycles | mean | first picture, s | reference | left out |",
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|",
     ]
     found = {(row.file, row.mark, row.method): row for row in rows}
     for file, mark in dict.fromkeys((row.file, row.mark) for row in rows):
@@ -128,7 +138,7 @@ def table(rows: list[Row]) -> str:
             f"| {ours.relative_mse / theirs.relative_mse:.2f} | {our_denoised.flip:.3f} | {their_denoised.flip:.3f} "
             f"| {our_denoised.flip / their_denoised.flip:.2f} | {our_denoised.relative_mse:.2g} "
             f"| {their_denoised.relative_mse:.2g} | {ours.mean_ratio:.4f} | {ours.first_picture_seconds:.1f}, "
-            f"{theirs.first_picture_seconds:.1f} | {ours.reference_noise:.1g} |"
+            f"{theirs.first_picture_seconds:.1f} | {ours.reference_noise:.1g} | {ours.left_out:.1%} |"
         )
     return "\n".join(lines)
 
@@ -144,7 +154,9 @@ _HOW = """\
   Denoised pictures are by Open Image Denoise with albedo and normal, which Cycles prefilters accurately.
 - *ratio* is RPPM's value over Cycles'; below 1, RPPM is ahead. *mean* is RPPM's mean radiance over the reference's.
   *first picture* is measured from the start of the process, of RPPM and of Cycles.
-- *reference* is the relMSE that the reference has by its noise: two long runs of Cycles."""
+- *reference* is the relMSE that the reference has by its noise: two long runs of Cycles.
+- *left out* are pixels that show coincident faces, and those beside them. Cycles' rays that leave one of two such faces
+  meet the other, so that its pictures are too dark there."""
 
 
 def page_text(rows: list[Row], machine: dict[str, object], resolution: str) -> str:

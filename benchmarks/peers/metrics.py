@@ -11,7 +11,7 @@ LEFT_OUT = 0.001
 def relative_mse(picture: np.ndarray, reference: np.ndarray) -> float:
     """Mean of (picture - reference)^2 / (reference^2 + EPSILON) over the channels and all but the worst pixels.
 
-    What is not finite counts as black.
+    picture, reference: (..., 3). What is not finite counts as black.
     """
     picture, reference = np.nan_to_num(picture, posinf=0.0, neginf=0.0).astype(np.float64), reference.astype(np.float64)
     errors = ((picture - reference) ** 2 / (reference**2 + EPSILON)).mean(axis=-1).ravel()
@@ -66,14 +66,17 @@ def displayed(picture: np.ndarray, exposure: float) -> np.ndarray:
     return curved.astype(np.float32)
 
 
-def flip(picture: np.ndarray, reference: np.ndarray, exposure: float) -> float:
-    """Mean LDR-FLIP (Andersson et al. 2020) of the two as displayed, at the default 67 pixels per degree."""
+def flip(picture: np.ndarray, reference: np.ndarray, exposure: float, counted: np.ndarray | None = None) -> float:
+    """Mean LDR-FLIP (Andersson et al. 2020) of the two as displayed, at the default 67 pixels per degree.
+
+    counted: (H, W) bool, the pixels of which the mean is taken; all without it.
+    """
     import flip_evaluator  # late: the bench extra
 
-    _, mean, _ = flip_evaluator.evaluate(
+    errors, mean, _ = flip_evaluator.evaluate(
         displayed(reference, exposure), displayed(picture, exposure), "LDR", applyMagma=False
     )
-    return float(mean)
+    return float(mean) if counted is None else float(errors[counted].mean())
 
 
 def convergence_rate(counts: list[float], errors: list[float]) -> float:

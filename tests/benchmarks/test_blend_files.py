@@ -12,7 +12,7 @@ def rows():
     flips = {"rppm": 0.3, "cycles": 0.4, "rppm_denoised": 0.03, "cycles_denoised": 0.02}
     for mark in (5.0, 20.0):
         for name in COMPARED:
-            yield Row("car", name, mark, errors[name] / mark, flips[name], 1.01, 9.0, 2.5, 1e-6)
+            yield Row("car", name, mark, errors[name] / mark, flips[name], 1.01, 9.0, 2.5, 1e-6, 0.031)
 
 
 def test_the_table_has_a_line_a_file_and_time_with_ratios():
@@ -20,6 +20,7 @@ def test_the_table_has_a_line_a_file_and_time_with_ratios():
     cells = [cell.strip() for cell in after_five.strip("|").split("|")]
     assert cells[:5] == ["car", "5", "0.0004", "0.0008", "0.50"]
     assert cells[5:8] == ["0.030", "0.020", "1.50"]
+    assert cells[-1] == "3.1%"
     assert after_twenty.startswith("| car | 20 | 0.0001 |")
 
 

@@ -72,9 +72,17 @@ def suspects_of(scene: Scene) -> list[str]:
     return _coincident_faces(scene, surfaces) + _lamps_in_surfaces(scene, surfaces)
 
 
+def coincident_pixels(scene: Scene, width: int, height: int) -> np.ndarray:
+    """(height, width) bool, the top row first: pixels where any of four rays of the camera meets coincident faces."""
+    surfaces = _Surfaces(scene)
+    rays = zip(*_camera_rays(scene.camera, 2 * width, 2 * height))
+    found = [surfaces.coincident(origin, direction) is not None for origin, direction in rays]
+    return np.array(found).reshape(height, 2, width, 2).any(axis=(1, 3))[::-1]
+
+
 def _coincident_faces(scene: Scene, surfaces: _Surfaces) -> list[str]:
     found, names = 0, set()
-    origins, directions = _camera_rays(scene.camera)
+    origins, directions = _camera_rays(scene.camera, *RAYS)
     for origin, direction in zip(origins, directions):
         pair = surfaces.coincident(origin, direction)
         if pair is not None:
@@ -101,10 +109,12 @@ def _lamps_in_surfaces(scene: Scene, surfaces: _Surfaces) -> list[str]:
     return [f"lamps exactly in a surface: {', '.join(sorted(found)[:5])}"] if found else []
 
 
-def _camera_rays(camera: Camera) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 3) origins and directions over the picture; a panorama looks at all that is around it."""
-    across, up = (np.arange(count) + 0.37 for count in RAYS)
-    x, y = (grid.ravel() for grid in np.meshgrid(across / RAYS[0], up / RAYS[1]))
+def _camera_rays(camera: Camera, columns: int, rows: int) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) origins and directions over the picture, row by row from below.
+
+    A panorama looks at all that is around it."""
+    across, up = (np.arange(count) + 0.37 for count in (columns, rows))
+    x, y = (grid.ravel() for grid in np.meshgrid(across / columns, up / rows))
     left, right, bottom, top = camera.window
     at = np.stack([left + (right - left) * x, bottom + (top - bottom) * y], axis=-1)
     zeros = np.zeros((len(x), 1))

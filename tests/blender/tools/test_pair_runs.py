@@ -6,12 +6,13 @@ import sys
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 
 from rppm_addon.blender.export import export_scene
 from tests.parity.scenes import DIFFUSE, ball, camera, light, material, new_scene, place, plane
 from tools.pairs.settings import BOUNCES, Effort, equalize
-from tools.pairs.suspects import suspects_of
+from tools.pairs.suspects import coincident_pixels, suspects_of
 
 ROOT = Path(__file__).parents[3]
 
@@ -31,6 +32,20 @@ def test_coincident_faces_are_found(registered, orthographic):
     (told,) = suspects()
     assert told.startswith("coincident faces in ")
     assert "(Mesh and Mesh.001)" in told
+
+
+def test_pixels_that_show_coincident_faces_are_found(registered):
+    new_scene()
+    plane(1.0, material(DIFFUSE))
+    plane(0.25, material(DIFFUSE), place(at=(0.5, 0.5, 0.0)))
+    camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
+    bpy.context.scene.camera.data.type = "ORTHO"
+    bpy.context.scene.camera.data.ortho_scale = 2.0
+    bpy.context.scene.render.resolution_x = bpy.context.scene.render.resolution_y = 16
+    found = coincident_pixels(export_scene(bpy.context.evaluated_depsgraph_get()), 16, 16)
+    expected = np.zeros((16, 16), bool)
+    expected[2:6, 10:14] = True  # the upper right
+    np.testing.assert_array_equal(found, expected)
 
 
 def test_faces_that_are_near_are_not_coincident(registered):
