@@ -38,6 +38,8 @@ class ExportContext:
     """Whether Blender evaluated what renders show, and not viewports."""
     has_light_groups: bool = False
     """Whether objects are asked for theirs."""
+    diced_in: bpy.types.Depsgraph | None = None
+    """Depsgraph of whose objects those with Adaptive Subdivision are prepared to be divided; None divides none."""
     owner_reads: int = 0
     """How often an attribute was read from the owners."""
 
@@ -62,6 +64,7 @@ class ExportContext:
         layer = depsgraph.view_layer_eval
         self.owners = (layer, scene, world_of(depsgraph))
         self.curves, self.is_render = curve_settings(depsgraph), depsgraph.mode == "RENDER"
+        self.diced_in = depsgraph
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
         self.filter = LayerFilter.of(layer)

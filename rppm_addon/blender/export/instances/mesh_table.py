@@ -115,8 +115,9 @@ class MeshTable:
         place = self._places.get(key)
         if key not in self._places or (place is not None and not attributes <= self._tried[place]):
             # What is made for the moment is read at once.
-            slices = Slices() if is_made_anew(mesh) else self._report.slices
-            with _read_of(source, mesh) as evaluated:
+            depsgraph = self._context.diced_in
+            slices = Slices() if is_made_anew(source, mesh, depsgraph) else self._report.slices
+            with _read_of(source, mesh, depsgraph) as evaluated:
                 if key not in self._places:
                     self._add(source, evaluated, key, owner, slices)
                 place = self._places[key]
@@ -161,8 +162,9 @@ class MeshTable:
             self._places[key] = None
             return
         place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
-        if exported.shape is MeshShape.SURFACE and exported.volume is None:
-            exported.dicing = export_dicing(source, self._context.is_render)
+        depsgraph = self._context.diced_in
+        if depsgraph is not None and exported.shape is MeshShape.SURFACE and exported.volume is None:
+            exported.dicing = export_dicing(source, depsgraph)
         self.meshes[place : place + 1] = [exported]
         self._tried[place] = set()
         self._keys[place] = key
@@ -197,11 +199,13 @@ class MeshTable:
 
 @contextlib.contextmanager
 def _read_of(
-    source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | GridSource | None
+    source: bpy.types.Object,
+    mesh: bpy.types.Mesh | RoundSource | GridSource | None,
+    depsgraph: bpy.types.Depsgraph | None,
 ) -> Iterator[bpy.types.Mesh | RoundSource | GridSource | None]:
     """The data to be read of an object: those given, or else a mesh that Blender makes of it; None without one."""
     if mesh is None or isinstance(mesh, bpy.types.Mesh):
-        with rendered_mesh(source, mesh) as rendered:
+        with rendered_mesh(source, mesh, depsgraph) as rendered:
             yield rendered
     else:
         yield mesh

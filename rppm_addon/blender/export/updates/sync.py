@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Scene that follows a depsgraph which lives on: only what has changed is exported again."""
 
+import dataclasses
 import math
 from collections.abc import Callable
 
@@ -163,6 +164,8 @@ class SceneSync:
         settings.validate()
         new = Scene(camera=camera, settings=settings, world=world)
         fill_scene(new, depsgraph, context, self._objects.exporter, placed, suns)
+        if self._viewport:
+            _keep_view_of_dicing(self.scene, new)
         if self._most_images == 0:
             self._most_images = len(new.images) + _MOST_UNUSED
         self.scene = share(self.scene, new)
@@ -183,3 +186,16 @@ class SceneSync:
             pending.has_untracked = True
             pending.materials |= self._objects.exporter.materials.untracked
             self._world.forget_untracked()
+
+
+def _keep_view_of_dicing(before: Scene | None, after: Scene) -> None:
+    """Have the view of the scene before divide the meshes, or that of this scene where any of them is new: as in
+    Cycles, nothing is divided anew as the viewport is navigated."""
+    if after.dicing_view.camera is not None:
+        return
+    known = set() if before is None else {id(mesh) for mesh in before.meshes}
+    diced = [id(mesh) for mesh in after.meshes if mesh.dicing is not None]
+    if diced:
+        is_known = before is not None and before.dicing_view.camera is not None and known.issuperset(diced)
+        camera = before.dicing_view.camera if is_known else after.camera
+        after.dicing_view = dataclasses.replace(after.dicing_view, camera=camera)
