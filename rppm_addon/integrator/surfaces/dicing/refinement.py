@@ -20,6 +20,8 @@ _IN_THREE_FROM_FIRST = [3, 1, 4], [0, 3, 4], [0, 4, 2]
 _IN_THREE_FROM_LAST = [3, 1, 4], [0, 3, 2], [3, 4, 2]
 """Parts of a triangle by its corners, 0 to 2, and the middles of its edges, 3 to 5, of which the first ones count. In
 three, the shorter diagonal divides what remains beside the corner between the two edges."""
+_CLEAR, _MANY = 2.0, 1 << 14
+"""Excess of triangles, and number of triangles that it is expected of, for which there is no need to halve on."""
 _Points = Callable[[np.ndarray, np.ndarray], np.ndarray]
 """Function that returns the points (n, 3) of triangles (n,) at barycentrics (n, 3)."""
 
@@ -86,8 +88,9 @@ class Refiner:
             if not has_long.any():
                 break
             active, lengths, is_long = active.rows(has_long), lengths[has_long], is_long[has_long]
-            if finished + len(active) + is_long.sum() > most:
-                raise TooManyTriangles((finished + _expected(lengths / longest)) / most)
+            expected = (finished + _expected(lengths / longest)) / most
+            if finished + len(active) + is_long.sum() > most or (expected > _CLEAR and len(active) > _MANY):
+                raise TooManyTriangles(expected)
             active, sources, weights = _halved(active, is_long, lengths, vertices)
             added.append((sources, weights))
             vertices += len(sources)
