@@ -333,7 +333,7 @@ def test_what_bends_is_divided_where_nothing_displaces_it(displaced):
     flat = dataclasses.replace(square, dicing=Dicing(2.0, True, False))
     instances = [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [0]), Instance(2, np.eye(4), [0])]
     result = displaced(scene_of(plain(), meshes=[ball, square, flat], instances=instances))
-    np.testing.assert_allclose(np.linalg.norm(result.meshes[0].positions, axis=1), 1.0, atol=4e-3)
+    np.testing.assert_allclose(np.linalg.norm(result.meshes[0].positions, axis=1), 1.0, atol=5e-3)
     assert result.meshes[0].triangle_count > 2 * ball.triangle_count
     assert result.meshes[1].triangle_count > 4 * square.triangle_count and result.meshes[2] is flat
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from ....scene.meshes import Mesh
 from ..unit_vectors import unit_vectors
+from .feature_curves import FeatureCurves
 
 _SHARPEST = np.cos(np.radians(35.0))
 """Cosine between the normals of a vertex and of a face around it from which on edges at the vertex are creases."""
@@ -19,15 +20,19 @@ _AT_ONCE = 1 << 16
 class CurvedTriangles:
     """Cubic triangles through vertices (Vlachos et al., Curved PN Triangles, 2001).
 
-    The curve of an edge follows from its ends and their normals alone, so neighbors meet. Vertices with creases have no
-    normal: there edges leave straight.
+    The curve of an edge follows from its ends alone, so neighbors meet: from their normals, along creases and borders
+    from the tangents there. Where creases meet a vertex, all other edges leave it straight.
     """
 
-    def __init__(self, triangles: np.ndarray, positions: np.ndarray, normals: np.ndarray | None) -> None:
-        """triangles: (n, 3) vertices; positions, normals: (vertices, 3), a normal of 0 for none. Without normals the
-        triangles are flat, and positions may have any number of channels."""
+    def __init__(self, triangles: np.ndarray, positions: np.ndarray, is_curved: bool) -> None:
+        """triangles: (n, 3) vertices; positions: (vertices, 3), of flat triangles with any number of channels."""
         self._corners = positions[triangles].astype(np.float64)
-        self._controls = None if normals is None else _controls(self._corners, normals[triangles].astype(np.float64))
+        self._controls: np.ndarray | None = None
+        if is_curved:
+            normals, has_creases = vertex_normals(triangles, positions)
+            normals[has_creases] = 0.0
+            curves = FeatureCurves(triangles, positions, _face_normals(triangles, positions))
+            self._controls = _controls(self._corners, normals[triangles], curves.edges, curves.tangents[triangles])
 
     def points(self, triangles: np.ndarray, weights: np.ndarray) -> np.ndarray:
         """(n, channels) float64 points at barycentrics ``weights`` (n, 3) of triangles (n,)."""
@@ -52,24 +57,32 @@ class CurvedTriangles:
         return np.einsum("nk,nkc->nc", powers, self._controls[triangles])
 
 
-def _controls(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(n, 10, 3) control points: corners, then two of each edge from the first corner round, then the middle one."""
+def _controls(corners: np.ndarray, normals: np.ndarray, is_feature: np.ndarray, tangents: np.ndarray) -> np.ndarray:
+    """(n, 10, 3) control points: corners, then two of each edge from the first corner round, then the middle one.
+
+    corners, normals, tangents: (n, 3, 3); is_feature: (n, 3) as FeatureCurves has it.
+    """
     edges = []
     for start in range(3):
         end = (start + 1) % 3
         for near, far in ((start, end), (end, start)):
             way = corners[:, far] - corners[:, near]
             rise = (way * normals[:, near]).sum(axis=-1, keepdims=True) * normals[:, near]
-            edges.append((2.0 * corners[:, near] + corners[:, far] - rise) / 3.0)
+            along = (way * tangents[:, near]).sum(axis=-1, keepdims=True)
+            length = np.linalg.norm(way, axis=-1, keepdims=True)
+            tangent = np.where(along != 0.0, np.sign(along) * length * tangents[:, near], way)
+            edges.append(corners[:, near] + np.where(is_feature[:, start, None], tangent, way - rise) / 3.0)
     mean = sum(edges) / 6.0
     middle = mean + 0.5 * (mean - corners.mean(axis=1))
     return np.stack([*corners.transpose(1, 0, 2), *edges, middle], axis=1)
 
 
-def vertex_normals(mesh: Mesh, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(vertices, 3) float64 unit normals of vertices (vertices, 3), means of those of the faces around them weighted by
-    angle, and (vertices,) whether a vertex has creases: a face there turns too far from the mean."""
-    triangles = mesh.corner_vertices[mesh.triangle_corners]
+def vertex_normals(triangles: np.ndarray, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(vertices, 3) float64 unit normals of the vertices of triangles (n, 3), means of those of the faces weighted by
+    angle, and (vertices,) whether a vertex has creases: a face there turns too far from the mean.
+
+    positions: (vertices, 3).
+    """
     corners = positions[triangles].astype(np.float64)
     ways = unit_vectors(np.roll(corners, -1, axis=1) - corners)
     angles = np.arccos(np.clip(-(ways * np.roll(ways, 1, axis=1)).sum(axis=-1), -1.0, 1.0))
@@ -87,7 +100,7 @@ def creased_normals(mesh: Mesh, positions: np.ndarray, corner_normals: np.ndarra
     """(corners, 3) float32: corner normals (corners, 3), of which those that are smooth across creases become the means
     of the normals of the faces on their side. positions: (vertices, 3)."""
     triangles = mesh.corner_vertices[mesh.triangle_corners]
-    normals, has_creases = vertex_normals(mesh, positions)
+    normals, has_creases = vertex_normals(triangles, positions)
     is_smooth = (corner_normals * normals[mesh.corner_vertices]).sum(axis=1) > _SMOOTH
     chosen = has_creases[triangles] & is_smooth[mesh.triangle_corners]
     places = np.flatnonzero(chosen)

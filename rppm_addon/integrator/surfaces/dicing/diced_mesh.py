@@ -11,7 +11,7 @@ from ....scene.camera import Camera
 from ....scene.meshes import SMOOTH_NORMALS, AttributeDomain, DicingView, Instance, Mesh, MeshAttribute
 from ....scene.motion import Deformation
 from ..unit_vectors import unit_vectors
-from .curved_triangles import CurvedTriangles, creased_normals, vertex_normals
+from .curved_triangles import CurvedTriangles, creased_normals
 from .edge_lengths import EdgeLengths
 from .refinement import Refinement, Refiner, TooManyTriangles
 
@@ -95,18 +95,14 @@ class DicedMesh:
         return dicing is not None and dicing.is_curved
 
     def _shape(self, positions: np.ndarray) -> CurvedTriangles:
-        if not self._is_curved:
-            return CurvedTriangles(self._vertices, positions, None)
-        normals, has_creases = vertex_normals(self._source, positions)
-        normals[has_creases] = 0.0
-        return CurvedTriangles(self._vertices, positions, normals)
+        return CurvedTriangles(self._vertices, positions, self._is_curved)
 
     def _attribute(self, name: str, attribute: MeshAttribute) -> MeshAttribute:
         values = attribute.values
         if attribute.domain is AttributeDomain.TRIANGLE:
             return MeshAttribute(attribute.domain, values[self._refinement.sources])
         if attribute.domain is AttributeDomain.POINT:
-            flat = CurvedTriangles(self._vertices, values, None)
+            flat = CurvedTriangles(self._vertices, values, False)
             return MeshAttribute(attribute.domain, self._of_vertices(values, flat.points))
         mixed = self._of_corners(values)
         if name == SMOOTH_NORMALS:

@@ -69,12 +69,12 @@ def test_levels_of_the_modifier_say_nothing(scene, cage, exported_by_render):
         modifier.levels = modifier.render_levels = levels
         for exported in (export(scene), exported_by_render()):
             (mesh,) = exported.meshes
-            assert mesh.dicing.base_level == 4 and mesh.triangle_count == 6 * 4**4 * 2 and exported.warnings == []
+            assert mesh.dicing.base_level == 5 and mesh.triangle_count == 6 * 4**5 * 2 and exported.warnings == []
         assert modifier.levels == modifier.render_levels == levels
         assert len(evaluated_positions(cage)) == [8, 26, None, 386][levels]
         assert not len(depsgraph().updates)
     owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else cage.cycles
-    owner.use_adaptive_subdivision, modifier.levels = False, 4
+    owner.use_adaptive_subdivision, modifier.levels = False, 5
     cage.update_tag()
     np.testing.assert_array_equal(mesh.positions, evaluated_positions(cage))
     np.testing.assert_array_equal(mesh.corner_uv, export(scene).meshes[0].corner_uv)
@@ -115,10 +115,10 @@ def test_lengths_are_in_pixels_or_meters(scene, cage):
     modifier = cage.modifiers[0]
     modifier.adaptive_pixel_size = 2.0
     cage.update_tag()
-    assert export(scene).meshes[0].dicing == Dicing(2.0, True, True, 4)
+    assert export(scene).meshes[0].dicing == Dicing(2.0, True, True, 5)
     modifier.adaptive_space, modifier.adaptive_object_edge_length = "OBJECT", 0.25
     cage.update_tag()
-    assert export(scene).meshes[0].dicing == Dicing(0.25, False, True, 4)
+    assert export(scene).meshes[0].dicing == Dicing(0.25, False, True, 5)
 
 
 def test_shapes_of_motion_are_divided_alike(scene, cage, exported_by_render):
@@ -133,7 +133,7 @@ def test_shapes_of_motion_are_divided_alike(scene, cage, exported_by_render):
     scene.frame_set(1)
     exported = exported_by_render()
     (mesh,), (deformation,) = exported.meshes, exported.shutter.meshes
-    assert mesh.dicing.base_level == 4 and deformation.positions.shape[1:] == mesh.positions.shape
+    assert mesh.dicing.base_level == 5 and deformation.positions.shape[1:] == mesh.positions.shape
     wider = deformation.positions[-1]
     scale = (wider * mesh.positions).sum() / (mesh.positions**2).sum()
     assert scale > 1.01

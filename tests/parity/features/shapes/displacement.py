@@ -31,8 +31,8 @@ def displaced(name, displacement, method="DISPLACEMENT", prepare=None, **members
 def surface(name: str, displacement, method: str, color: dict = COLOR) -> bpy.types.Material:
     made, net = material(name)
     made.displacement_method = method
-    moved = {} if displacement is None else {"Displacement": displacement(net)}
-    net.output(net.out("BsdfDiffuse", inputs=color), **moved)
+    shading = net.out("BsdfDiffuse", inputs=color)
+    net.output(shading, **({} if displacement is None else {"Displacement": displacement(net)}))
     return made
 
 
@@ -127,7 +127,7 @@ def dicing_camera(displacement: Socket):
         lens = bpy.data.cameras.new("Long")
         lens.lens = 20.0 * scene.camera.data.lens
         scene.cycles.dicing_camera = link_object(lens, scene.camera.matrix_world, "Long")
-        scene.cycles.dicing_rate, scene.cycles.offscreen_dicing_scale = 60.0, 1.0
+        scene.cycles.dicing_rate, scene.cycles.offscreen_dicing_scale = 25.0, 1.0
 
     return make
 

@@ -94,7 +94,7 @@ def test_curved_faces_come_near_a_sphere():
     )
     assert flat.min() < 0.6
     fine = DicedMesh(dataclasses.replace(sphere("Ball"), dicing=CURVED), HERE, CAMERA, DicingView()).mesh
-    np.testing.assert_allclose(np.linalg.norm(fine.positions, axis=1), 1.0, atol=4e-3)  # at its seam it is open
+    np.testing.assert_allclose(np.linalg.norm(fine.positions, axis=1), 1.0, atol=5e-3)  # at its seam it is open
     # The corners of a cube are too sharp to be bent round; twice as many faces are not.
     assert curved.min() == flat.min()
 
@@ -118,6 +118,29 @@ def test_creases_stay_straight():
     up = np.tile(np.float32([0.0, 0.6, 0.8]), (len(roof.corner_normals), 1))
     own = DicedMesh(dataclasses.replace(roof, dicing=CURVED, corner_normals=up), HERE, CAMERA, DicingView()).mesh
     np.testing.assert_allclose(own.corner_normals, np.tile(up[0], (len(own.corner_normals), 1)), atol=1e-6)
+
+
+@pytest.mark.parametrize("height", [0.0, 1.0])
+def test_borders_and_creases_are_curves(height):
+    """A disk of 16 corners is round, and so is the edge between it and the side of a cylinder."""
+    turns = np.arange(16) * np.pi / 8.0
+    rim = np.stack([np.cos(turns), np.sin(turns), 0.0 * turns], axis=-1)
+    points, faces = np.concatenate([rim, [(0.0, 0.0, 0.0)]]), [(16, k, (k + 1) % 16) for k in range(16)]
+    if height:
+        points = np.concatenate([points, rim - [0.0, 0.0, height]])
+        faces += [((k + 1) % 16, k, 17 + k, 17 + (k + 1) % 16) for k in range(16)]
+    mesh = DicedMesh(dataclasses.replace(polygons("Disk", points, faces), dicing=CURVED), HERE, CAMERA, DicingView())
+    radii = np.linalg.norm(mesh.mesh.positions[:, :2], axis=1)
+    edges = np.sort(edges_of(mesh.mesh), axis=1)
+    on_rim = np.abs(mesh.mesh.positions[:, 2]) < 1e-6
+    unique, counts = np.unique(edges, axis=0, return_counts=True)
+    border = np.unique(unique[counts == 1])
+    assert len(border) > 64
+    np.testing.assert_allclose(radii[border], 1.0, atol=5e-4)
+    sides = np.unique(edges[(mesh.mesh.positions[edges][..., 2] < -1e-6).any(axis=1)])
+    crease = np.intersect1d(np.flatnonzero(on_rim), sides)
+    assert len(crease) > 64 or not height
+    np.testing.assert_allclose(radii[crease], 1.0, atol=5e-4)
 
 
 def test_shapes_are_divided_as_the_mesh_is():

@@ -13,9 +13,11 @@ import bpy
 from .....scene.meshes import Dicing
 
 _LEAST = 1e-4
-_MOST_FACES = 4096
-"""Number of faces up to which Blender divides a mesh."""
-_MOST_LEVELS = 4
+_MOST_FACES, _MOST_LEVELS = 1 << 12, 4
+"""Number of faces, and of times, up to which Blender divides a mesh."""
+_MOST_FACES_CREASED, _MOST_LEVELS_CREASED = 1 << 13, 5
+"""The same for a mesh with creases, along which surfaces turn within a short way."""
+_CREASES = ("crease_edge", "crease_vert")
 
 
 def adaptive_modifier(source: bpy.types.Object, render: bool = True) -> bpy.types.SubsurfModifier | None:
@@ -116,8 +118,10 @@ def _level_of_base(
     level = _level(modifier, depsgraph)
     faces = len(source.data.polygons) / 4 ** (level - 1) if level else len(source.data.loops)
     best = int(modifier.subdivision_type == "CATMULL_CLARK")
-    most = min(_MOST_LEVELS, getattr(getattr(depsgraph.scene_eval, "cycles", None), "max_subdivisions", _MOST_LEVELS))
-    while best < most and faces * 4**best <= _MOST_FACES:
+    is_creased = any(name in source.data.attributes for name in _CREASES)
+    most_faces, most = (_MOST_FACES_CREASED, _MOST_LEVELS_CREASED) if is_creased else (_MOST_FACES, _MOST_LEVELS)
+    most = min(most, getattr(getattr(depsgraph.scene_eval, "cycles", None), "max_subdivisions", most))
+    while best < most and faces * 4**best <= most_faces:
         best += 1
     simplified = _simplified_level(depsgraph)
     return best if simplified is None else min(best, simplified)
