@@ -6,7 +6,7 @@ import dataclasses
 import bpy
 import numpy as np
 import pytest
-from blender_scenes import CAMERA, add_mesh, add_object, depsgraph, export, following
+from blender_scenes import CAMERA, add_mesh, add_object, collect, depsgraph, export, following, show_collection
 
 from rppm_addon.blender.export import SceneSync, export_scene
 from rppm_addon.scene.meshes import Dicing
@@ -18,7 +18,8 @@ FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (
 
 @pytest.fixture
 def cage(scene):
-    """A creased cube with a UV map and Adaptive Subdivision."""
+    """A creased cube with a UV map and Adaptive Subdivision, in a large picture."""
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 1920, 1080, 100
     cube = add_mesh(scene, "Cage", CORNERS, FACES)
     cube.data.uv_layers.new(name="UVMap")
     crease = cube.data.attributes.new("crease_edge", "FLOAT", "EDGE")
@@ -69,15 +70,39 @@ def test_levels_of_the_modifier_say_nothing(scene, cage, exported_by_render):
         modifier.levels = modifier.render_levels = levels
         for exported in (export(scene), exported_by_render()):
             (mesh,) = exported.meshes
-            assert mesh.dicing.base_level == 5 and mesh.triangle_count == 6 * 4**5 * 2 and exported.warnings == []
+            assert mesh.dicing.base_level == 6 and mesh.triangle_count == 6 * 4**6 * 2 and exported.warnings == []
         assert modifier.levels == modifier.render_levels == levels
         assert len(evaluated_positions(cage)) == [8, 26, None, 386][levels]
         assert not len(depsgraph().updates)
     owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else cage.cycles
-    owner.use_adaptive_subdivision, modifier.levels = False, 5
+    owner.use_adaptive_subdivision, modifier.levels = False, 6
     cage.update_tag()
     np.testing.assert_array_equal(mesh.positions, evaluated_positions(cage))
     np.testing.assert_array_equal(mesh.corner_uv, export(scene).meshes[0].corner_uv)
+
+
+def test_small_objects_are_hardly_divided_before(scene, cage):
+    def level():
+        cage.update_tag()
+        return export(scene).meshes[0].dicing.base_level
+
+    scene.camera.location = (0.0, 0.0, 300.0)
+    far = level()
+    scene.camera.location = (0.0, 0.0, 2000.0)
+    assert level() == 1 < far < 6
+    scene.cycles.dicing_camera = add_object(scene, "Near", bpy.data.cameras.new("Near"), location=(0.0, 0.0, 4.0))
+    assert level() == 6
+    scene.cycles.dicing_camera = None
+    scene.cycles.dicing_rate = 0.1
+    assert level() > 1
+    cage.scale = (1e4, 1.0, 1.0)
+    assert level() == 6
+
+
+def test_objects_that_others_multiply_may_be_seen_anywhere(scene, cage):
+    scene.camera.location = (0.0, 0.0, 2000.0)
+    show_collection(scene, collect(scene, cage))
+    assert export(scene).meshes[0].dicing.base_level == 5
 
 
 def test_dense_meshes_are_hardly_divided_before(scene):
@@ -85,6 +110,7 @@ def test_dense_meshes_are_hardly_divided_before(scene):
     points = [(x, y, 0.0) for y in side for x in side]
     faces = [(k, k + 1, k + 42, k + 41) for j in range(40) for k in range(41 * j, 41 * j + 40)]
     dense = add_mesh(scene, "Dense", points, faces)
+    scene.camera.location = (0.0, 0.0, 100.0)
     modifier = divide(dense, 2)
     assert export(scene).meshes[0].dicing.base_level == 1
     modifier.subdivision_type = "SIMPLE"  # whose vertices stay where they are
@@ -115,10 +141,10 @@ def test_lengths_are_in_pixels_or_meters(scene, cage):
     modifier = cage.modifiers[0]
     modifier.adaptive_pixel_size = 2.0
     cage.update_tag()
-    assert export(scene).meshes[0].dicing == Dicing(2.0, True, True, 5)
+    assert export(scene).meshes[0].dicing == Dicing(2.0, True, True, 6)
     modifier.adaptive_space, modifier.adaptive_object_edge_length = "OBJECT", 0.25
     cage.update_tag()
-    assert export(scene).meshes[0].dicing == Dicing(0.25, False, True, 5)
+    assert export(scene).meshes[0].dicing == Dicing(0.25, False, True, 3)
 
 
 def test_shapes_of_motion_are_divided_alike(scene, cage, exported_by_render):
@@ -133,7 +159,7 @@ def test_shapes_of_motion_are_divided_alike(scene, cage, exported_by_render):
     scene.frame_set(1)
     exported = exported_by_render()
     (mesh,), (deformation,) = exported.meshes, exported.shutter.meshes
-    assert mesh.dicing.base_level == 5 and deformation.positions.shape[1:] == mesh.positions.shape
+    assert mesh.dicing.base_level == 6 and deformation.positions.shape[1:] == mesh.positions.shape
     wider = deformation.positions[-1]
     scale = (wider * mesh.positions).sum() / (mesh.positions**2).sum()
     assert scale > 1.01
