@@ -104,8 +104,8 @@ UNNAMED = (
         "divided as the camera sees the largest of them; in Cycles, as it sees the first",
     ),
     (
-        "Adaptive Subdivision in viewports, after modifiers of other kinds",
-        "goes on from the viewport levels of the modifier, which should not be 0",
+        "Adaptive Subdivision after physics, and in viewports after modifiers of other kinds",
+        "goes on from the levels of the modifier, which should not be 0",
     ),
     (
         "A volume of the world that emits and scatters light",

@@ -79,7 +79,7 @@ class Refiner:
         done: list[_Part] = []
         added: list[tuple[np.ndarray, np.ndarray]] = []
         longest, finished = LONGEST * coarser, 0
-        for _ in range(rounds):
+        for left in range(rounds, 0, -1):
             lengths = self._lengths(seen, active.vertices, active.vertices[:, _ENDS])
             is_long = lengths > longest
             has_long = is_long.any(axis=1)
@@ -88,7 +88,7 @@ class Refiner:
             if not has_long.any():
                 break
             active, lengths, is_long = active.rows(has_long), lengths[has_long], is_long[has_long]
-            expected = (finished + _expected(lengths / longest)) / most
+            expected = (finished + _expected(lengths / longest, left)) / most
             if finished + len(active) + is_long.sum() > most or (expected > _CLEAR and len(active) > _MANY):
                 raise TooManyTriangles(expected)
             active, sources, weights = _halved(active, is_long, lengths, vertices)
@@ -135,9 +135,10 @@ class _Part:
         )
 
 
-def _expected(lengths: np.ndarray) -> float:
-    """About how many triangles come of some with edges of these lengths (n, 3) in units of the longest allowed."""
-    halvings = np.ceil(np.log2(np.clip(np.sort(lengths, axis=1), 1.0, 1e6)))
+def _expected(lengths: np.ndarray, rounds: int) -> float:
+    """About how many triangles come of some with edges of these lengths (n, 3), in units of the longest allowed, that
+    are halved at most ``rounds`` times each."""
+    halvings = np.minimum(np.ceil(np.log2(np.clip(np.sort(lengths, axis=1), 1.0, 1e6))), rounds)
     return float(np.exp2(halvings[:, 2] + halvings[:, 0]).sum())
 
 

@@ -136,6 +136,13 @@ def test_after_other_modifiers_renders_alone_set_the_level(scene, cage, exported
     assert exported_by_render().meshes[0].dicing.base_level > 1
 
 
+def test_physics_are_not_applied_anew(scene, cage, exported_by_render):
+    cage.modifiers.new("Collision", "COLLISION")
+    cage.modifiers.move(1, 0)
+    cage.modifiers[1].render_levels = 2
+    assert exported_by_render().meshes[0].dicing.base_level == 2
+
+
 @pytest.mark.skipif(bpy.app.version < (5, 0, 0), reason="Cycles' own property before")
 def test_lengths_are_in_pixels_or_meters(scene, cage):
     modifier = cage.modifiers[0]

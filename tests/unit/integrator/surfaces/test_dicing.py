@@ -226,6 +226,15 @@ def test_edges_are_halved_no_more_often_than_it_is_said():
         assert DicedMesh(mesh, HERE, CAMERA, DicingView(0.1, max_subdivisions=3)).mesh.triangle_count == expected
 
 
+def test_what_is_divided_a_few_times_only_is_not_taken_for_too_much():
+    side = np.linspace(-1.0, 1.0, 101)
+    points = np.array([(x, y, 0.0) for y in side for x in side])
+    faces = [(k, k + 1, k + 102, k + 101) for j in range(100) for k in range(101 * j, 101 * j + 100)]
+    mesh = dataclasses.replace(polygons("Grid", points, faces), dicing=Dicing(1e-3, True, False))
+    diced = DicedMesh(mesh, HERE, CAMERA, DicingView(max_subdivisions=2))
+    assert diced.mesh.triangle_count == 2 * 100**2 * 16 and diced.coarsening == 1.0
+
+
 @pytest.mark.parametrize("instances", [1, 3])
 def test_there_are_no_more_triangles_than_allowed(monkeypatch, instances):
     """Edges then are longer, by a factor that is told."""

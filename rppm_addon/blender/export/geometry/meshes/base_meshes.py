@@ -24,6 +24,10 @@ _MOST_LEVELS_FLAT, _MOST_FACES_FLAT = 4, 1 << 12
 """The same for what stays flat."""
 _MOST_FACES_MULTIPLIED = 1 << 13
 """Number of faces up to which Blender divides what other objects multiply, which may be seen anywhere."""
+_PHYSICS = {
+    "CLOTH", "COLLISION", "DYNAMIC_PAINT", "EXPLODE", "FLUID", "PARTICLE_INSTANCE", "PARTICLE_SYSTEM", "SOFT_BODY",
+}  # fmt: skip
+"""Types of modifiers that go on from what they were at, so that applying them anew may change the object."""
 _LONGEST = 1.5
 """Length of edges, in units of the length that is asked for, from which on Blender divides a mesh no more."""
 _NEAREST = 0.05
@@ -104,8 +108,14 @@ class BaseMeshes:
         modifier = adaptive_modifier(source, self._is_render)
         if modifier is None or source.type != "MESH" or source.data.is_editmode:
             return None
-        if not self._is_render and not all(hasattr(each, "levels") for each in source.modifiers):
-            return None  # an assignment would tag the object, which would be exported again
+        if any(each.type in _PHYSICS for each in source.modifiers):
+            return None
+        if not self._is_render and (
+            source.mode != "OBJECT"
+            # An assignment to these alone would tag the object, which would then be exported again.
+            or not all(hasattr(each, "levels") for each in source.modifiers)
+        ):
+            return None
         applied, best = self._applied_level(modifier), self._best_level(source, modifier, is_multiplied)
         return None if best == applied else best
 
