@@ -156,6 +156,8 @@ class SceneSync:
         source, context = depsgraph.scene_eval, self._context
         context.read_from(depsgraph)
         self._cull(Culling() if self._viewport else Culling(source, camera))
+        if not self._is_unfinished:
+            self._forget_outdated()
         self._add_untracked(source.frame_current_final)
         self._objects.renew_materials(depsgraph, edits, self._pending)
         world, suns = self._world.update(depsgraph)
@@ -169,6 +171,16 @@ class SceneSync:
         if self._most_images == 0:
             self._most_images = len(new.images) + _MOST_UNUSED
         self.scene = share(self.scene, new)
+
+    def _forget_outdated(self) -> None:
+        """Forget the meshes that Blender is to divide more or less, as they are seen larger or smaller."""
+        bases = self._context.base_meshes
+        outdated = set() if bases is None else bases.outdated()
+        if outdated:
+            self.relist()
+            self._objects.exporter.meshes.forget(outdated)
+            for noted in (self._pending.objects, self._pending.shapes, self._pending.looks):
+                noted.update(outdated)
 
     def _cull(self, culling: Culling) -> None:
         """Take what Simplify leaves out now."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from blender_scenes import CAMERA, add_mesh, add_object, collect, depsgraph, export, following, show_collection
 
-from rppm_addon.blender.export import SceneSync, export_scene
+from rppm_addon.blender.export import Eye, FrameExporter, SceneSync, export_scene
 from rppm_addon.scene.meshes import Dicing
 from rppm_addon.self_test.meshes import placed
 
@@ -183,6 +183,22 @@ def test_the_dicing_camera_decides(scene, cage):
     view = export(scene).dicing_view
     assert (view.rate, view.offscreen_scale, view.max_subdivisions) == (2.0, 3.0, 5)
     assert view.camera.matrix[2, 3] == 77.0 and view.camera.width == export(scene).camera.width
+
+
+def test_frames_that_follow_each_other_are_divided_as_if_alone(scene, cage):
+    """With Persistent Data, in which the depsgraph reports nothing but the camera."""
+    add_mesh(scene, "Other")
+    exporter, levels, others = FrameExporter(), [], []
+    for distance in (2000.0, 10.0, 10.0, 2000.0):
+        scene.camera.location = (0.0, 0.0, distance)
+        bpy.context.view_layer.update()
+        exported = exporter.export(depsgraph(), lambda: False, lambda text: None, Eye())
+        shown = {exported.meshes[instance.mesh].name: exported.meshes[instance.mesh] for instance in exported.instances}
+        levels.append((shown["Cage"].dicing.base_level, shown["Cage"].triangle_count))
+        others.append(shown["Other"])
+        np.testing.assert_array_equal(shown["Cage"].positions, export(scene).meshes[0].positions)
+    assert levels == [(1, 48), (6, 6 * 4**6 * 2), (6, 6 * 4**6 * 2), (1, 48)]
+    assert all(other is others[0] for other in others)
 
 
 def test_viewports_divide_anew_what_is_edited_only(scene, cage):

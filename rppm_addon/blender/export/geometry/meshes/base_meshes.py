@@ -44,6 +44,8 @@ class BaseMeshes:
         self.read_from(depsgraph, viewport)
         self._levels: dict[int, int | None] = {}
         """By the session_uid of an original object; None where its mesh is taken as its modifiers have it."""
+        self._multiplied: dict[int, bool] = {}
+        """By the session_uid of original objects with Adaptive Subdivision, whether other objects show them."""
 
     def read_from(self, depsgraph: bpy.types.Depsgraph, viewport: bool) -> None:
         """Take the objects of a depsgraph as they are now."""
@@ -63,7 +65,22 @@ class BaseMeshes:
         key = source.original.session_uid
         before = self._levels.get(key)
         self._levels[key] = self._decided(source, is_multiplied)
+        self._multiplied.pop(key, None)
+        if adaptive_modifier(source, self._is_render) is not None:
+            self._multiplied[key] = is_multiplied
         return self._levels[key] != before
+
+    def outdated(self) -> set[int]:
+        """Return the session_uid of the original objects for which another level is best by now, as they are seen
+        larger or smaller."""
+        if not self._multiplied:
+            return set()
+        known = {source.original.session_uid: source for source in self._depsgraph.objects}
+        return {
+            key
+            for key, is_multiplied in self._multiplied.items()
+            if key in known and self._decided(known[key], is_multiplied) != self._levels[key]
+        }
 
     def divides(self, source: bpy.types.Object, data: object) -> bool:
         """True where ``mesh`` gives another mesh than the data of an evaluated object."""
