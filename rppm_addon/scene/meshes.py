@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .camera import Camera
 from .common.declared import declared
 from .light_linking import LightLinking
 from .volumes import Volume
@@ -39,13 +40,29 @@ class MeshAttribute:
 
 @dataclass(frozen=True)
 class Dicing:
-    """How finely a mesh is divided where it is displaced (Adaptive Subdivision)."""
+    """Fineness to which a mesh is divided before it is rendered (Adaptive Subdivision)."""
 
     edge_length: float = field(metadata=declared(minimum=1e-6))
-    """How long edges may be: in pixels, of which Scene.dicing_rate is the unit, or in meters, object space."""
+    """Length of edges: in pixels, or in meters of object space; DicingView.rate multiplies it."""
     in_pixels: bool
     is_curved: bool
-    """Whether faces bend by their normals as they are divided; else they stay flat."""
+    """True where faces bend by their normals as they are divided; else they stay flat."""
+    base_level: int = field(default=0, metadata=declared(minimum=0))
+    """Number of times that the edges of the mesh have been halved already."""
+
+
+@dataclass(frozen=True, eq=False)
+class DicingView:
+    """View by which a scene divides those of its meshes that have a Dicing."""
+
+    rate: float = field(default=1.0, metadata=declared(minimum=1e-6))
+    """Factor on Dicing.edge_length."""
+    offscreen_scale: float = field(default=4.0, metadata=declared(minimum=1.0))
+    """Factor that says how much longer edges outside of the picture may be, the farther they are from it."""
+    max_subdivisions: int = field(default=12, metadata=declared(minimum=0))
+    """Number of times that edges are halved at most, those of Dicing.base_level included."""
+    camera: Camera | None = None
+    """Camera that sees the edges; None is the scene's."""
 
 
 class MeshShape(enum.Enum):
@@ -85,7 +102,7 @@ class Mesh:
     attributes: dict[str, MeshAttribute] = field(default_factory=dict)
     """By name, those that the materials in use ask for."""
     dicing: Dicing | None = None
-    """None: it is displaced as it is."""
+    """None: it is rendered as it is."""
     shape: MeshShape = MeshShape.SURFACE
     volume: Volume | None = None
     """Grids that the nodes of the volume inside read."""

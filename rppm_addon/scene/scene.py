@@ -16,7 +16,7 @@ from .errors import SceneError
 from .images import Image
 from .lights import Light, World
 from .materials import Material
-from .meshes import Instance, InstanceArray, Mesh
+from .meshes import DicingView, Instance, InstanceArray, Mesh
 from .motion import Shutter
 from .settings import RenderSettings
 
@@ -42,8 +42,7 @@ class Scene:
     """Alpha of a surface from which on passes that show the first surface show it; 0 is any."""
     working_space: str = field(default=REC709.name, metadata=declared(choices=tuple(WORKING_SPACES)))
     """Name of the linear space of all colors."""
-    dicing_rate: float = field(default=1.0, metadata=declared(minimum=1e-6))
-    """Pixels that are the unit of Dicing.edge_length."""
+    dicing_view: DicingView = field(default_factory=DicingView)
     cubemap_center: np.ndarray | None = field(default=None, metadata=declared(3))
     """(3,) meters where the deep cubemap's center goes; None is automatic."""
     world_origin: np.ndarray | None = field(default=None, metadata=declared(3))

@@ -9,6 +9,7 @@ from rppm_addon.scene import Camera, DirectLight, Image, Light, LightKind, Light
 from rppm_addon.scene.meshes import (
     AttributeDomain,
     Dicing,
+    DicingView,
     Instance,
     InstanceArray,
     Mesh,
@@ -49,7 +50,7 @@ def full_scene() -> Scene:
         np.array([0, 1], np.int32),
         rng.random((4, 2), np.float32),
         attributes={"heat": MeshAttribute(AttributeDomain.CORNER, rng.random((4, 3), np.float32))},
-        dicing=Dicing(2.0, True, False),
+        dicing=Dicing(2.0, True, False, 1),
     )
     bare = dataclasses.replace(mesh, name="bare", corner_uv=None, dicing=None, shape=MeshShape.STRANDS)
     return Scene(
@@ -94,7 +95,7 @@ def full_scene() -> Scene:
         images=[Image("i", rng.integers(0, 255, (2, 3, 4), np.uint8), "SRGB")],
         settings=RenderSettings(iterations=7, direct_light=DirectLight.PHOTONS),
         exposure=2.0,
-        dicing_rate=0.5,
+        dicing_view=DicingView(0.5, 2.0, 7, Camera(np.eye(4), (-1, 1, -0.5, 0.5), 32, 16)),
         shutter=Shutter(
             np.linspace(0, 1, 5),
             [Movement(0, np.array([0, 0.5, 1]), rng.random((3, 4, 4)))],

@@ -95,6 +95,7 @@ def export_baked_scene(
     Raises SceneError where the object is not rendered, ExportStopped when the user wants no more.
     """
     context = _context_of(depsgraph, engine)
+    context.base_meshes = None  # texels know triangles by number
     source = depsgraph.scene_eval
     scene = Scene(camera=camera_beside(baked, depsgraph))
     scene.settings = bake_settings(export_settings(source, depsgraph.view_layer), bake_pass, pixels)

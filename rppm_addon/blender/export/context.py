@@ -7,6 +7,7 @@ import bpy
 
 from .camera.culling import Culling
 from .common.report import Report
+from .geometry.meshes.base_meshes import BaseMeshes
 from .geometry.strands.curve_settings import CurveSettings, curve_settings
 from .images.images import ImageTable
 from .images.texture_limit import texture_limit
@@ -38,6 +39,8 @@ class ExportContext:
     """Whether Blender evaluated what renders show, and not viewports."""
     has_light_groups: bool = False
     """Whether objects are asked for theirs."""
+    base_meshes: BaseMeshes | None = None
+    """Meshes with Adaptive Subdivision; None where none is divided."""
     owner_reads: int = 0
     """How often an attribute was read from the owners."""
 
@@ -62,6 +65,9 @@ class ExportContext:
         layer = depsgraph.view_layer_eval
         self.owners = (layer, scene, world_of(depsgraph))
         self.curves, self.is_render = curve_settings(depsgraph), depsgraph.mode == "RENDER"
+        if self.base_meshes is None:
+            self.base_meshes = BaseMeshes(depsgraph, self.viewport)
+        self.base_meshes.read_from(depsgraph, self.viewport)
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
         self.filter = LayerFilter.of(layer)

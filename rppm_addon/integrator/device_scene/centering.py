@@ -16,7 +16,7 @@ import numpy as np
 
 from ...scene.camera import Camera
 from ...scene.lights import Light, LightKind
-from ...scene.meshes import Instance
+from ...scene.meshes import DicingView, Instance
 from ...scene.motion import CameraMovement, Movement, Shutter
 from ...scene.scene import Scene
 from ...scene.storage.sharing import changed_members, same_members
@@ -73,6 +73,7 @@ class Centering:
             scene,
             world_origin=scene.world_offset + origin,
             camera=once(scene.camera, lambda camera: _shifted_camera(camera, origin)),
+            dicing_view=once(scene.dicing_view, lambda view: _shifted_view(view, origin)),
             instances=self._centered_instances(scene.instances, origin),
             lights=[light if light.kind is LightKind.SUN else once(light, moved) for light in scene.lights],
             cubemap_center=None if center is None else once(center, lambda place: np.asarray(place) - origin),
@@ -184,6 +185,10 @@ def _shifted_camera(camera: Camera, origin: np.ndarray) -> Camera:
         x, y, z = np.array(place) - is_place * origin
         texels = dataclasses.replace(texels, viewer=(float(x), float(y), float(z), is_place))
     return dataclasses.replace(camera, matrix=_shifted(camera.matrix, origin), texels=texels)
+
+
+def _shifted_view(view: DicingView, origin: np.ndarray) -> DicingView:
+    return view if view.camera is None else dataclasses.replace(view, camera=_shifted_camera(view.camera, origin))
 
 
 def _shifted_shutter(shutter: Shutter, scene: Scene, origin: np.ndarray) -> Shutter:

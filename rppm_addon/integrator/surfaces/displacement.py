@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes whose vertices are moved by what the nodes of their materials give there, as Cycles does before a render."""
+"""Meshes that are divided, and whose vertices are moved by what the nodes of their materials give there, as Cycles does
+before a render."""
 
 import dataclasses
-import functools
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from ...scene.meshes import UNDISPLACED, AttributeDomain, Instance, Mesh, MeshAt
 from ...scene.motion import Deformation, Shutter
 from ...scene.scene import Scene
 from ...scene.storage.sharing import same_bits
-from .dicing import MOST_TRIANGLES, DicedMesh, parts_of_edges, rounded_parts
+from .dicing.diced_mesh import MOST_TRIANGLES, DicedMesh
 from .displaced_normals import displaced_normals
 from .displaced_vertices import DisplacedVertices
 
@@ -26,14 +26,16 @@ _Slots = tuple[tuple[int, bool] | None, ...]
 
 @dataclass
 class _Shape:
-    """A mesh with displacing materials, and what became of it."""
+    """A mesh that is divided or has displacing materials, and what became of it."""
 
     source: Mesh
     slots: _Slots
     instance: Instance
     """The first that has it: of this one nodes are asked, whatever the others are."""
-    parts: int
-    """Into which edges are divided before."""
+    diced: DicedMesh | None = None
+    """The source divided; None where it stays whole."""
+    dicing_key: tuple[object, ...] = ()
+    """View and instances by which it was divided, to be compared."""
     offsets: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.float32))
     """(vertices, 3) object space."""
     displaced: Mesh | None = None
@@ -42,10 +44,10 @@ class _Shape:
     placed: dict[int, tuple[Instance, Instance]] = field(default_factory=dict)
     """By the id of an instance, it and the same of the displaced mesh, where others have the mesh as it was."""
 
-    @functools.cached_property
-    def diced(self) -> DicedMesh | None:
-        """The source divided; None where it stays whole."""
-        return DicedMesh(self.source, self.parts) if self.parts > 1 else None
+    @property
+    def is_displaced(self) -> bool:
+        """True where any of its materials displaces."""
+        return any(self.slots)
 
     @property
     def mesh(self) -> Mesh:
@@ -87,15 +89,16 @@ class Displacement:
         users = _users(scene, self._slots)
         known, self._shapes = self._shapes, {}
         stale = []
-        for mesh, slots, members in _displaced(users):
+        for mesh, slots, members in _changed(scene, users):
             source, first = scene.meshes[mesh], scene.instances[members[0]]
-            parts, shape = self._parts(scene, source, members), known.get((id(source), slots))
-            if shape is None or shape.parts != parts:
-                shape = _Shape(source, slots, first, parts)
+            key, shape = _dicing_key(scene, source, members), known.get((id(source), slots))
+            if shape is None or shape.dicing_key != key:
+                shape = _Shape(source, slots, first, _diced(scene, source, members), key)
             if renewed or shape.displaced is None or shape.instance is not first:
                 shape.instance = first
                 stale.append(shape)
             self._shapes[id(source), slots] = shape
+            self._warn_of_coarsening(shape)
         if not self._shapes:
             return scene
         self._evaluate(scene, materials, stale)
@@ -104,11 +107,16 @@ class Displacement:
     def as_known(self, scene: Scene) -> Scene:
         """The scene with those of its meshes displaced that the last one had; itself where there are none."""
         users = _users(scene, self._slots)
-        unknown = {mesh for mesh, slots, _ in _displaced(users) if (id(scene.meshes[mesh]), slots) not in self._shapes}
+        changed = _changed(scene, users)
+        unknown = {mesh for mesh, slots, _ in changed if (id(scene.meshes[mesh]), slots) not in self._shapes}
         users = {mesh: by_slots for mesh, by_slots in users.items() if mesh not in unknown}
         return self._with_shapes(scene, users) if users else scene
 
     def _evaluate(self, scene: Scene, materials: MaterialTables, shapes: list[_Shape]) -> None:
+        for shape in shapes:
+            if not shape.is_displaced:
+                shape.displaced = shape.mesh
+        shapes = [shape for shape in shapes if shape.is_displaced]
         if not shapes:
             return
         vertices = DisplacedVertices(self._context, self._library)
@@ -121,26 +129,18 @@ class Displacement:
                 shape.offsets, shape.displaced = offsets, _moved(shape, offsets)
                 shape.deformations, shape.placed = {}, {}
 
-    def _parts(self, scene: Scene, mesh: Mesh, members: list[int]) -> int:
-        """Into how many parts the edges of a mesh are divided that these instances have."""
-        triangles = mesh.triangle_count * len(members)
-        if mesh.dicing is None or triangles == 0 or scene.camera.texels is not None:  # texels know them by number
-            return 1
-        instances = [scene.instances[member] for member in members]
-        wanted = parts_of_edges(mesh, instances, scene.camera, scene.dicing_rate)
-        parts = rounded_parts(wanted, triangles)
-        if parts < wanted:
+    def _warn_of_coarsening(self, shape: _Shape) -> None:
+        if shape.diced is not None and shape.diced.coarsening > 1.0:
             self.warnings.append(
-                f'Object "{instances[0].object_name}": Adaptive Subdivision leaves edges {wanted / parts:.1f} times as '
-                f"long as it is asked for, as it makes no more than {MOST_TRIANGLES} triangles; raise its Pixel Size "
-                "or the Dicing Rate"
+                f'Object "{shape.instance.object_name}": Adaptive Subdivision leaves edges '
+                f"{shape.diced.coarsening:.1f} times as long as it is asked for, as it makes no more than "
+                f"{MOST_TRIANGLES} triangles; raise its Pixel Size or the Dicing Rate"
             )
-        return parts
 
     def _with_shapes(self, scene: Scene, users: "_Users") -> Scene:
         meshes, instances = list(scene.meshes), list(scene.instances)
         places: dict[int, list[tuple[int, _Shape]]] = {}
-        for mesh, slots, members in _displaced(users):
+        for mesh, slots, members in _changed(scene, users):
             shape = self._shapes[id(scene.meshes[mesh]), slots]
             assert shape.displaced is not None
             if len(users[mesh]) == 1:
@@ -170,8 +170,9 @@ _Users = dict[int, dict[_Slots, list[int]]]
 
 
 def _users(scene: Scene, slots_of: dict[int, tuple[int, bool]]) -> _Users:
-    """Return the instances of those meshes of which any instance is displaced, by mesh and slots."""
-    if not slots_of:
+    """Return the instances of those meshes of which any instance is divided or displaced, by mesh and slots."""
+    is_diced = [_is_smoothed(scene, mesh) for mesh in scene.meshes]
+    if not slots_of and not any(is_diced):
         return {}
     found: _Users = {}
     known: dict[tuple[int, ...], _Slots] = {}
@@ -182,14 +183,46 @@ def _users(scene: Scene, slots_of: dict[int, tuple[int, bool]]) -> _Users:
         if key not in known:
             known[key] = tuple(slots_of.get(material) for material in key)
         found.setdefault(instance.mesh, {}).setdefault(known[key], []).append(member)
-    return {mesh: by_slots for mesh, by_slots in found.items() if any(map(any, by_slots))}
+    return {mesh: by_slots for mesh, by_slots in found.items() if is_diced[mesh] or any(map(any, by_slots))}
 
 
-def _displaced(users: _Users) -> Iterator[tuple[int, _Slots, list[int]]]:
+def _changed(scene: Scene, users: _Users) -> Iterator[tuple[int, _Slots, list[int]]]:
+    """The meshes, slots and instances that are divided or displaced."""
     for mesh, by_slots in users.items():
         for slots, members in by_slots.items():
-            if any(slots):
+            if any(slots) or _is_smoothed(scene, scene.meshes[mesh]):
                 yield mesh, slots, members
+
+
+def _is_diced(scene: Scene, mesh: Mesh) -> bool:
+    """True for a mesh that is divided where it is displaced. Texels know triangles by number."""
+    return mesh.dicing is not None and mesh.triangle_count > 0 and scene.camera.texels is None
+
+
+def _is_smoothed(scene: Scene, mesh: Mesh) -> bool:
+    """True for a mesh that is divided even where nothing displaces it, as its faces bend."""
+    return _is_diced(scene, mesh) and mesh.dicing is not None and mesh.dicing.is_curved
+
+
+def _diced(scene: Scene, mesh: Mesh, members: list[int]) -> DicedMesh | None:
+    """The mesh divided as these instances are seen; None where it stays whole."""
+    if not _is_diced(scene, mesh):
+        return None
+    view = scene.dicing_view
+    return DicedMesh(mesh, [scene.instances[member] for member in members], view.camera or scene.camera, view)
+
+
+def _dicing_key(scene: Scene, mesh: Mesh, members: list[int]) -> tuple[object, ...]:
+    """Return what the division of a mesh rests on beside the mesh, to be compared."""
+    if mesh.dicing is None or not _is_diced(scene, mesh):
+        return ()
+    view = scene.dicing_view
+    if not mesh.dicing.in_pixels:
+        return view.max_subdivisions, view.rate, len(members)
+    camera = view.camera or scene.camera
+    seen = camera.matrix.tobytes(), camera.window, camera.width, camera.orthographic, repr(camera.panorama)
+    places = [scene.instances[member].matrix for member in members]
+    return view.max_subdivisions, view.rate, view.offscreen_scale, *seen, b"".join(place.tobytes() for place in places)
 
 
 def _placed(shape: _Shape, instance: Instance, mesh: int) -> Instance:

@@ -17,7 +17,7 @@ from .documents import field_names
 
 LISTS = ("meshes", "instances", "instance_arrays", "materials", "lights", "images")
 _LARGE = {"meshes", "images"}
-_MEMBERS = ("camera", "world", "settings")
+_MEMBERS = ("camera", "world", "settings", "dicing_view")
 _SMALL = 1 << 10
 _PART = 1 << 16
 

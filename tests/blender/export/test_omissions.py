@@ -33,16 +33,6 @@ def the(scene, kind):
     return next(found for found in scene.objects if found.type == kind)
 
 
-def subdivide_adaptively(mesh, used=True):
-    modifier = next(iter(mesh.modifiers), None) or mesh.modifiers.new("smooth", "SUBSURF")
-    owner = modifier if hasattr(modifier, "use_adaptive_subdivision") else mesh.cycles
-    owner.use_adaptive_subdivision = used
-
-
-def subdivide(scene):
-    subdivide_adaptively(the(scene, "MESH"))
-
-
 def see_through(scene):
     scene.render.film_transparent = scene.cycles.film_transparent_glass = True
 
@@ -56,14 +46,6 @@ def step(scene):
         pytest.skip("this Blender has one way alone")
     scene.cycles.volume_biased = True
     scene.update_tag()
-
-
-def diced_by(name, value):
-    def use(scene):
-        subdivide(scene)
-        setattr(scene.cycles, name, scene.camera if value is None else value)
-
-    return use
 
 
 def of_cycles(name, value=True):
@@ -97,12 +79,8 @@ def clip(scene):
 
 
 USES = {
-    "Adaptive Subdivision": subdivide,
     "Clipping": clip,
-    "Dicing Camera": diced_by("dicing_camera", None),
     "Fast GI Approximation": of_cycles("use_fast_gi"),
-    "Max Subdivisions": diced_by("max_subdivisions", 3),
-    "Offscreen Scale": diced_by("offscreen_dicing_scale", 1.0),
     "Sample Subset": of_cycles("use_sample_subset"),
     "Sampling Pattern": of_cycles("sampling_pattern", "BLUE_NOISE"),
     "Threads": fix_threads,
@@ -124,7 +102,7 @@ def test_what_is_used_is_named_once(lit, omission):
 
 def test_previews_name_nothing(lit):
     """Their scene is Blender's own, and none of the user's doing."""
-    subdivide(lit)
+    catch_shadows(lit)
     lit.view_layers[0].update()
     engine = SimpleNamespace(is_preview=True, test_break=lambda: False, update_stats=lambda *_: None)
     scene = export_scene(depsgraph(), engine)
@@ -133,8 +111,8 @@ def test_previews_name_nothing(lit):
 
 def test_many_objects_make_one_line(scene):
     for _ in range(5):
-        subdivide_adaptively(add_mesh(scene))
-    (text,) = warnings_about(scene, "Adaptive Subdivision")
+        add_mesh(scene).is_shadow_catcher = True
+    (text,) = warnings_about(scene, "Shadow Catcher")
     assert '"Mesh", "Mesh.001", "Mesh.002" and 2 more' in text
 
 
@@ -152,13 +130,6 @@ def test_passes_that_are_on_for_cycles_only(lit):
     assert "Denoising Data, Debug Sample Count;" in text and "Copy from Cycles" in text
     layer.rppm.use_pass_denoising_data = layer.rppm.use_pass_debug_sample_count = True
     assert not warnings_about(lit, "Passes that are on for Cycles only")
-
-
-@pytest.mark.parametrize("name", ["dicing_camera", "max_subdivisions", "offscreen_dicing_scale"])
-def test_settings_of_dicing_are_named_where_something_is_diced(lit, name):
-    of_cycles(name, lit.camera if name == "dicing_camera" else 7)(lit)
-    titles = ("Dicing Camera", "Max Subdivisions", "Offscreen Scale")
-    assert not [text for text in export(lit).warnings if text.startswith(titles)]
 
 
 def test_settings_of_view_layers_that_differ_from_those_of_cycles(lit):
@@ -180,16 +151,16 @@ def test_settings_of_view_layers_that_differ_from_those_of_cycles(lit):
 
 def test_a_viewport_follows_edits(lit):
     sync, camera = SceneSync(), export(lit).camera
-    title = "Adaptive Subdivision"
+    title = "Shadow Catcher"
 
     def told():
         lit.view_layers[0].update()
         return any(text.startswith(title) for text in sync.update(depsgraph(), camera).warnings)
 
     assert not told()
-    subdivide_adaptively(the(lit, "MESH"))
+    the(lit, "MESH").is_shadow_catcher = True
     assert told()
-    subdivide_adaptively(the(lit, "MESH"), used=False)
+    the(lit, "MESH").is_shadow_catcher = False
     assert not told()
 
 

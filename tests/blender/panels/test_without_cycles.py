@@ -39,7 +39,7 @@ def test_panels_name_what_the_addon_adds_and_offer_to_enable_it(without_cycles):
         "RPPM_PT_light": "Portal, Max Bounces",
         "RPPM_PT_motion_blur": "Rolling Shutter",
         "RPPM_PT_curves": "Shape, Curve Subdivisions",
-        "RPPM_PT_subdivision": "Dicing Rate",
+        "RPPM_PT_subdivision": "Dicing Rate, Offscreen Scale, Max Subdivisions, Dicing Camera",
         "RPPM_PT_object_motion_blur": "Motion Blur, Steps, Deformation",
         "RPPM_PT_simplify": "Texture Limit, Culling",
         "RPPM_PT_object_culling": "Camera Culling, Distance Culling",
@@ -63,7 +63,7 @@ def test_with_the_addon_the_same_panels_show_its_properties(scene):
     assert shown >= {
         "is_portal", "max_bounces", "motion_steps", "use_deform_motion", "use_camera_cull", "use_distance_cull",
         "texture_limit", "texture_limit_render", "shape", "dicing_rate", "preview_dicing_rate", "camera",
-        "use_adaptive_subdivision",
+        "use_adaptive_subdivision", "offscreen_dicing_scale", "max_subdivisions", "dicing_camera",
     }  # fmt: skip
 
 

@@ -12,9 +12,18 @@ from rppm_addon.integrator.surfaces.displacement import Displacement
 from rppm_addon.integrator.viewport.first_look import FirstLook
 from rppm_addon.materials.tables import MaterialTables
 from rppm_addon.scene import Deformation, Light, LightKind, Material, NodeGraph, RenderSettings, Scene, Shutter, World
-from rppm_addon.scene.camera import Camera
-from rppm_addon.scene.meshes import SMOOTH_NORMALS, UNDISPLACED, AttributeDomain, Dicing, Instance, Mesh, MeshAttribute
-from rppm_addon.self_test.meshes import placed, polygons
+from rppm_addon.scene.camera import Camera, Texels
+from rppm_addon.scene.meshes import (
+    SMOOTH_NORMALS,
+    UNDISPLACED,
+    AttributeDomain,
+    Dicing,
+    DicingView,
+    Instance,
+    Mesh,
+    MeshAttribute,
+)
+from rppm_addon.self_test.meshes import placed, polygons, sphere
 
 STEPS, WAVES, HEIGHT = 128, 6.0, 0.15
 
@@ -306,21 +315,53 @@ def test_meshes_are_divided_before(displaced):
     scene.shutter = Shutter(np.ones(4), meshes=[bent(mesh)])
     result = displaced(scene)
     (moved,) = result.meshes
-    assert moved.triangle_count == 16 * 16**2 * 2 and moved.dicing is None  # edges of 0.7 in 16 parts, not 15
+    assert moved.triangle_count == 16 * 16**2 and moved.dicing is None  # squares of 0.5 with two triangles, 1 : 2^7
     np.testing.assert_allclose(moved.positions[:, 2], HEIGHT * np.sin(WAVES * moved.positions[:, 0]), atol=1e-5)
     np.testing.assert_array_equal(result.shutter.meshes[0].positions[1], moved.positions)
     assert displaced(scene).meshes[0] is moved
     pixels = dataclasses.replace(mesh, dicing=Dicing(4.0, True, True))
     near, far = (
-        displaced(dataclasses.replace(scene_of(waves(), meshes=[pixels]), dicing_rate=rate)).meshes[0].triangle_count
+        displaced(dataclasses.replace(scene_of(waves(), meshes=[pixels]), dicing_view=DicingView(rate))).meshes[0]
         for rate in (1.0, 8.0)
     )
-    assert near > far == mesh.triangle_count
+    assert near.triangle_count > far.triangle_count == mesh.triangle_count
+
+
+def test_what_bends_is_divided_where_nothing_displaces_it(displaced):
+    """Flat meshes are not, as the picture is the same."""
+    ball, square = (dataclasses.replace(mesh, dicing=Dicing(2.0, True, True)) for mesh in (sphere("Ball"), grid(4)))
+    flat = dataclasses.replace(square, dicing=Dicing(2.0, True, False))
+    instances = [Instance(0, np.eye(4), [0]), Instance(1, np.eye(4), [0]), Instance(2, np.eye(4), [0])]
+    result = displaced(scene_of(plain(), meshes=[ball, square, flat], instances=instances))
+    np.testing.assert_allclose(np.linalg.norm(result.meshes[0].positions, axis=1), 1.0, atol=5e-3)
+    assert result.meshes[0].triangle_count > 2 * ball.triangle_count
+    assert result.meshes[1].triangle_count > 4 * square.triangle_count and result.meshes[2] is flat
+
+
+def test_meshes_are_divided_anew_for_another_view_only(displaced):
+    mesh = dataclasses.replace(grid(4), dicing=Dicing(2.0, True, True))
+    scene = scene_of(plain(), meshes=[mesh])
+    view = DicingView(camera=scene.camera)
+    scene = dataclasses.replace(scene, dicing_view=view)
+    first = displaced(scene).meshes[0]
+    near = dataclasses.replace(scene.camera, matrix=placed(0.0, 0.0, 1.0))
+    assert displaced(dataclasses.replace(scene, camera=near), False).meshes[0] is first
+    finer = displaced(dataclasses.replace(scene, camera=near, dicing_view=DicingView()), False).meshes[0]
+    assert finer.triangle_count > first.triangle_count
+    lower = displaced(dataclasses.replace(scene, dicing_view=dataclasses.replace(view, max_subdivisions=1)), False)
+    assert lower.meshes[0].triangle_count == 4 * mesh.triangle_count
+
+
+def test_nothing_is_divided_where_texels_know_triangles_by_number(displaced):
+    mesh = dataclasses.replace(grid(4), dicing=Dicing(0.05, False, True))
+    scene = scene_of(plain(), meshes=[mesh])
+    scene.camera.texels = Texels(0, np.zeros((32, 32), np.int32), *(np.zeros((32, 32, n), np.float32) for n in (2, 4)))
+    assert displaced(scene) is scene
 
 
 def test_divided_meshes_are_no_larger_than_they_may_be(mapper, monkeypatch):
     """Which is told as long as it is so, and no longer."""
-    monkeypatch.setattr("rppm_addon.integrator.surfaces.dicing.MOST_TRIANGLES", 512)
+    monkeypatch.setattr("rppm_addon.integrator.surfaces.dicing.diced_mesh.MOST_TRIANGLES", 512)
 
     def told(edge_length: float) -> list[str]:
         mesh = dataclasses.replace(grid(4), dicing=Dicing(edge_length, False, True))
@@ -330,7 +371,7 @@ def test_divided_meshes_are_no_larger_than_they_may_be(mapper, monkeypatch):
         return [text for text in changed.warnings if "Adaptive Subdivision leaves edges" in text]
 
     scene = scene_of(waves())
-    (first,), (second,) = told(0.05), told(0.06)
+    (first,), (second,) = told(0.05), told(0.02)
     assert mapper.triangle_count == 32 * 16 and first != second
     assert told(0.5) == []
 

@@ -66,6 +66,8 @@ that each property of a scene is rendered, named above, or listed with its reaso
 NAMED = (
     ("A volume of the world that varies", "rendered around the scene only, up to half of its size beyond it",
      "varies from place to place; it is rendered around the scene only"),
+    ("Adaptive Subdivision into more than a million triangles of all objects of a mesh",
+     "edges are longer than is asked for", "Adaptive Subdivision leaves edges"),
     ("Motion Blur of the gas of fluid domains", "gas is sharp", "its gas is sharp, though Motion Blur is on"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it",
      "has a phase function that varies from place to place"),
@@ -97,6 +99,14 @@ NAMED = (
 )  # fmt: skip
 """Uses that exports name as they come upon them, what becomes of them, and a part of the warning."""
 UNNAMED = (
+    (
+        "Objects that share a mesh with Adaptive Subdivision",
+        "divided as the camera sees the largest of them; in Cycles, as it sees the first",
+    ),
+    (
+        "Adaptive Subdivision after physics, and in viewports after modifiers of other kinds",
+        "goes on from the levels of the modifier, which should not be 0",
+    ),
     (
         "A volume of the world that emits and scatters light",
         "its light comes from within 12 mean free paths of the scene, at most from 8 times its diagonal, with more "

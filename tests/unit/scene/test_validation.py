@@ -9,7 +9,7 @@ from support.full_scene import full_scene, graph_of_everything
 
 from rppm_addon.scene import AttributeDomain, Link, MeshAttribute, NodeGraph, ShaderNode, Texels, load_scene, save_scene
 from rppm_addon.scene.errors import SceneError
-from rppm_addon.scene.meshes import SMOOTH_NORMALS, Dicing, RayVisibility
+from rppm_addon.scene.meshes import SMOOTH_NORMALS, Dicing, DicingView, RayVisibility
 from rppm_addon.scene.storage.validation import check_scene
 
 NAN, INF = float("nan"), float("inf")
@@ -87,7 +87,8 @@ BROKEN = [
     ("meshes.0.dicing", lambda scene: Dicing(0.0, True, False), "dicing: edge_length is 0.0; it must be 1e-06 or more"),
     ("meshes.0.dicing", lambda scene: Dicing(1.0, 1, False), "dicing: in_pixels is 1; it must be a bool"),
     ("meshes.1.shape", lambda scene: "STRANDS", "shape is 'STRANDS'; it must be a MeshShape"),
-    ("dicing_rate", lambda scene: -1.0, "dicing_rate is -1.0; it must be 1e-06 or more"),
+    ("dicing_view", lambda scene: DicingView(-1.0), "dicing_view: rate is -1.0; it must be 1e-06 or more"),
+    ("dicing_view", lambda scene: DicingView(offscreen_scale=0.5), "offscreen_scale is 0.5; it must be 1 or more"),
     ("instances.0.mesh", lambda scene: 2, 'instances.0. "object": mesh is 2; .* one of 2 meshes'),
     ("instances.0.mesh", lambda scene: -1, "mesh is -1"),
     ("instance_arrays.0.first.mesh", lambda scene: 2, "instance_arrays.0.: first: mesh is 2; .* one of 2 meshes"),

@@ -14,7 +14,7 @@ from ....scene.storage.sharing import equal
 from ..common.slices import Slices
 from ..context import ExportContext
 from ..geometry.meshes.attributes import export_attribute
-from ..geometry.meshes.dicing import export_dicing
+from ..geometry.meshes.base_meshes import BaseMeshes
 from ..geometry.meshes.meshes import NO_MESH, export_mesh
 from ..geometry.meshes.rendered_meshes import is_made_anew, rendered_mesh
 from ..geometry.strands.round_meshes import RoundSource, export_round, export_round_attribute
@@ -115,8 +115,11 @@ class MeshTable:
         place = self._places.get(key)
         if key not in self._places or (place is not None and not attributes <= self._tried[place]):
             # What is made for the moment is read at once.
-            slices = Slices() if is_made_anew(mesh) else self._report.slices
-            with _read_of(source, mesh) as evaluated:
+            bases = self._context.base_meshes
+            if bases is not None and key not in self._places and bases.renew(source, owner != bringers[1]):
+                self._unfinished.pop(key, None)  # it was of another mesh
+            slices = Slices() if is_made_anew(source, mesh, bases) else self._report.slices
+            with _read_of(source, mesh, bases) as evaluated:
                 if key not in self._places:
                     self._add(source, evaluated, key, owner, slices)
                 place = self._places[key]
@@ -161,8 +164,9 @@ class MeshTable:
             self._places[key] = None
             return
         place = self._places[key] = heapq.heappop(self._free) if self._free else len(self.meshes)
-        if exported.shape is MeshShape.SURFACE and exported.volume is None:
-            exported.dicing = export_dicing(source, self._context.is_render)
+        bases = self._context.base_meshes
+        if bases is not None and exported.shape is MeshShape.SURFACE and exported.volume is None:
+            exported.dicing = bases.dicing(source)
         self.meshes[place : place + 1] = [exported]
         self._tried[place] = set()
         self._keys[place] = key
@@ -197,11 +201,13 @@ class MeshTable:
 
 @contextlib.contextmanager
 def _read_of(
-    source: bpy.types.Object, mesh: bpy.types.Mesh | RoundSource | GridSource | None
+    source: bpy.types.Object,
+    mesh: bpy.types.Mesh | RoundSource | GridSource | None,
+    bases: BaseMeshes | None,
 ) -> Iterator[bpy.types.Mesh | RoundSource | GridSource | None]:
     """The data to be read of an object: those given, or else a mesh that Blender makes of it; None without one."""
     if mesh is None or isinstance(mesh, bpy.types.Mesh):
-        with rendered_mesh(source, mesh) as rendered:
+        with rendered_mesh(source, mesh, bases) as rendered:
             yield rendered
     else:
         yield mesh

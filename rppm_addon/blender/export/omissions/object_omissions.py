@@ -3,7 +3,6 @@
 
 import bpy
 
-from ..geometry.meshes.dicing import adaptive_modifier
 from .omission import Omission
 
 _CLIPPING = 0.00101
@@ -20,13 +19,6 @@ def _has_velocities(source: bpy.types.Object) -> bool:
 
 
 OF_OBJECTS = (
-    Omission(
-        "Adaptive Subdivision",
-        "what is displaced is divided evenly, into a million triangles at most; other surfaces are as their modifiers "
-        "have them for renders",
-        ("cycles.use_adaptive_subdivision", "modifiers"),
-        lambda source: adaptive_modifier(source) is not None,
-    ),
     Omission(
         "Shadow Catcher",
         "light that other objects reflect onto it is left out: shadows next to bright objects are darker",

@@ -9,7 +9,7 @@ from ..images.color_spaces import working_space
 from ..instances.objects import ObjectExporter
 from ..instances.placements import Placed
 from ..view_layer.assets import export_asset_names
-from ..view_layer.settings import export_cubemap_center, export_dicing_rate, export_exposure
+from ..view_layer.settings import export_cubemap_center, export_dicing_view, export_exposure
 
 
 def fill_scene(
@@ -31,7 +31,7 @@ def fill_scene(
     scene.exposure = export_exposure(source)
     scene.pass_alpha_threshold = depsgraph.view_layer_eval.pass_alpha_threshold
     scene.working_space = working_space().name
-    scene.dicing_rate = export_dicing_rate(source, context.viewport)
+    scene.dicing_view = export_dicing_view(depsgraph, context.viewport)
     scene.cubemap_center = export_cubemap_center(depsgraph)
     scene.asset_names = export_asset_names(depsgraph, scene.settings)
     scene.warnings = context.report.warnings

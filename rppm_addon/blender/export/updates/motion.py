@@ -202,7 +202,7 @@ class MotionExporter:
         middle: Mesh,
     ) -> tuple[np.ndarray, np.ndarray] | None:
         if isinstance(data, bpy.types.Mesh):
-            with rendered_mesh(_holder(instance), data) as mesh:
+            with rendered_mesh(_holder(instance), data, self._context.base_meshes) as mesh:
                 return None if mesh is None else _shape(mesh, middle)
         return round_shape_at(data, self._context.curves, middle, self._table.rings.get(place))
 
@@ -211,7 +211,7 @@ class MotionExporter:
     ) -> np.ndarray | None:
         """(vertices, 3) float32 meters a second, if there are any."""
         if isinstance(data, bpy.types.Mesh):
-            with rendered_mesh(_holder(instance), data) as mesh:
+            with rendered_mesh(_holder(instance), data, self._context.base_meshes) as mesh:
                 return None if mesh is None else read_velocities(mesh)
         return round_velocities(data, self._table.rings.get(place))
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Scene that follows a depsgraph which lives on: only what has changed is exported again."""
 
+import dataclasses
 import math
 from collections.abc import Callable
 
@@ -155,6 +156,8 @@ class SceneSync:
         source, context = depsgraph.scene_eval, self._context
         context.read_from(depsgraph)
         self._cull(Culling() if self._viewport else Culling(source, camera))
+        if not self._is_unfinished:
+            self._forget_outdated()
         self._add_untracked(source.frame_current_final)
         self._objects.renew_materials(depsgraph, edits, self._pending)
         world, suns = self._world.update(depsgraph)
@@ -163,9 +166,21 @@ class SceneSync:
         settings.validate()
         new = Scene(camera=camera, settings=settings, world=world)
         fill_scene(new, depsgraph, context, self._objects.exporter, placed, suns)
+        if self._viewport:
+            _keep_view_of_dicing(self.scene, new)
         if self._most_images == 0:
             self._most_images = len(new.images) + _MOST_UNUSED
         self.scene = share(self.scene, new)
+
+    def _forget_outdated(self) -> None:
+        """Forget the meshes that Blender is to divide more or less, as they are seen larger or smaller."""
+        bases = self._context.base_meshes
+        outdated = set() if bases is None else bases.outdated()
+        if outdated:
+            self.relist()
+            self._objects.exporter.meshes.forget(outdated)
+            for noted in (self._pending.objects, self._pending.shapes, self._pending.looks):
+                noted.update(outdated)
 
     def _cull(self, culling: Culling) -> None:
         """Take what Simplify leaves out now."""
@@ -183,3 +198,16 @@ class SceneSync:
             pending.has_untracked = True
             pending.materials |= self._objects.exporter.materials.untracked
             self._world.forget_untracked()
+
+
+def _keep_view_of_dicing(before: Scene | None, after: Scene) -> None:
+    """Have the view of the scene before divide the meshes, or that of this scene where any of them is new: as in
+    Cycles, nothing is divided anew as the viewport is navigated."""
+    if after.dicing_view.camera is not None:
+        return
+    known = set() if before is None else {id(mesh) for mesh in before.meshes}
+    diced = [id(mesh) for mesh in after.meshes if mesh.dicing is not None]
+    if diced:
+        is_known = before is not None and before.dicing_view.camera is not None and known.issuperset(diced)
+        camera = before.dicing_view.camera if is_known else after.camera
+        after.dicing_view = dataclasses.replace(after.dicing_view, camera=camera)

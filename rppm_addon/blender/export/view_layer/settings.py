@@ -7,9 +7,11 @@ import bpy
 import numpy as np
 
 from ....scene import RenderSettings
+from ....scene.meshes import DicingView
 from ....scene.passes import COMBINED
 from ....scene.settings.setting_info import settings_of
 from ...properties import VIEWPORT_APART, viewport_property
+from ..camera.camera import export_camera
 from .passes import aovs_of_layer, light_groups_of_layer, passes_of_layer
 
 
@@ -96,10 +98,20 @@ def export_cubemap_center(depsgraph: bpy.types.Depsgraph) -> np.ndarray | None:
     return None if chosen is None else np.array(chosen.evaluated_get(depsgraph).matrix_world.translation, float)
 
 
-def export_dicing_rate(scene: bpy.types.Scene, viewport: bool) -> float:
-    """Pixels by which Adaptive Subdivision measures edges; Cycles' defaults where it is not enabled."""
-    name, default = ("preview_dicing_rate", 8.0) if viewport else ("dicing_rate", 1.0)
-    return getattr(getattr(scene, "cycles", None), name, default)
+def export_dicing_view(depsgraph: bpy.types.Depsgraph, viewport: bool) -> DicingView:
+    """View by which Adaptive Subdivision divides meshes; Cycles' defaults where it is not enabled. Its camera is the
+    Dicing Camera, None where none is chosen. Raises SceneError as export_camera does."""
+    scene = depsgraph.scene_eval
+    cycles = getattr(scene, "cycles", None)
+    if cycles is None:
+        return DicingView(8.0 if viewport else 1.0)
+    chosen = cycles.dicing_camera
+    return DicingView(
+        cycles.preview_dicing_rate if viewport else cycles.dicing_rate,
+        max(cycles.offscreen_dicing_scale, 1.0),
+        cycles.max_subdivisions,
+        None if chosen is None else export_camera(scene, depsgraph, chosen),
+    )
 
 
 def export_exposure(scene: bpy.types.Scene) -> float:

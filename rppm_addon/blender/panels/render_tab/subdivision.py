@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adaptive Subdivision of displaced meshes: dicing rates of the scene, and the switch of an object.
+"""Adaptive Subdivision: settings of the scene by which meshes are divided, and the switch of an object.
 
 Blender's own modifier panel shows the switch for Cycles alone.
 """
@@ -17,11 +17,14 @@ class RPPM_PT_subdivision(RppmPanel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         column = self.column()
         if not cycles_properties.are_there():
-            cycles_properties.draw_remedy(column, "Dicing Rate")
+            cycles_properties.draw_remedy(column, "Dicing Rate, Offscreen Scale, Max Subdivisions, Dicing Camera")
             return
         rates = column.column(align=True)
         rates.prop(context.scene.cycles, "dicing_rate", text="Dicing Rate Render")
         rates.prop(context.scene.cycles, "preview_dicing_rate", text="Viewport")
+        column.prop(context.scene.cycles, "offscreen_dicing_scale", text="Offscreen Scale")
+        column.prop(context.scene.cycles, "max_subdivisions")
+        column.prop(context.scene.cycles, "dicing_camera")
 
 
 class RPPM_PT_adaptive_subdivision(RppmPanel, bpy.types.Panel):

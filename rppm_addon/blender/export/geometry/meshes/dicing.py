@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Adaptive Subdivision: how finely a mesh is divided once its modifiers have been applied."""
+"""Adaptive Subdivision: how finely the renderer divides a mesh."""
 
 import bpy
 
@@ -23,14 +23,12 @@ def adaptive_modifier(source: bpy.types.Object, render: bool = True) -> bpy.type
     return modifier if getattr(owner, "use_adaptive_subdivision", False) else None
 
 
-def export_dicing(source: bpy.types.Object, render: bool) -> Dicing | None:
-    """None where the mesh of an evaluated object is not divided further, in a render or else a viewport."""
-    modifier = adaptive_modifier(source, render)
-    if modifier is None:
-        return None
+def export_dicing(source: bpy.types.Object, modifier: bpy.types.SubsurfModifier, level: int) -> Dicing:
+    """Fineness to which the mesh of an evaluated object with an adaptive modifier is divided. level: of the mesh, by
+    which Blender has divided it."""
     is_curved = modifier.subdivision_type == "CATMULL_CLARK"
     if not hasattr(modifier, "use_adaptive_subdivision"):
-        return Dicing(max(source.cycles.dicing_rate, _LEAST), True, is_curved)
+        return Dicing(max(source.cycles.dicing_rate, _LEAST), True, is_curved, level)
     in_pixels = modifier.adaptive_space == "PIXEL"
     length = modifier.adaptive_pixel_size if in_pixels else modifier.adaptive_object_edge_length
-    return Dicing(max(length, _LEAST), in_pixels, is_curved)
+    return Dicing(max(length, _LEAST), in_pixels, is_curved, level)
