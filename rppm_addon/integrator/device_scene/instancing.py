@@ -6,7 +6,7 @@ import numpy as np
 from ...materials.traits.emitted import emits_alike, glowing_materials
 from ...materials.traits.node_rays import traces_rays
 from ...scene.meshes import Instance
-from ...scene.passes import DEEP_CUBEMAP, VECTOR
+from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
 from ...scene.storage.sharing import changed_members
@@ -100,7 +100,7 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
         not (has_cubemap and _has_media(scene))  # programs of both would need more storage blocks than devices have
         and settings.first_camera_hits in first_hits
         and scene.camera.texels is None
-        and not {VECTOR, DEEP_CUBEMAP.name} & set(settings.passes)
+        and DEEP_CUBEMAP.name not in settings.passes
         and not any(traces_rays(material.graph) for material in scene.materials)
     )
 

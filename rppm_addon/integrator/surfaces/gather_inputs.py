@@ -5,6 +5,7 @@ import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
 from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.meshes import Mesh
@@ -24,6 +25,16 @@ INSTANCE_ENTRY = Record(
     slot_count="uint",
     set_code="float",
 )
+StorageBlock("CornerVertices", "uint corner_vertices[];")
+StorageBlock("TriangleCorners", "uint triangle_corners[];")
+"""Vertices of corners and corners of triangles, each counted from where those of the mesh begin."""
+_STARTS = {
+    "mesh_triangle": "triangle_corners",
+    "mesh_corner": "corner_vertices",
+    "mesh_vertex": "positions",
+    "mesh_uv": "corner_uv",
+}
+"""Members of InstanceEntry that are where a mesh's part of such an array begins."""
 
 _DTYPES = {
     "positions": np.dtype(np.float32),
@@ -73,6 +84,14 @@ class GatherInputs(BufferSet):
             self._arrays[member] = arrays
 
 
+def array_starts(meshes: list[Mesh]) -> dict[str, np.ndarray]:
+    """(meshes,) int64 places where the arrays of each mesh begin, by the member of INSTANCE_ENTRY that says so."""
+    return {
+        field: part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1]
+        for field, member in _STARTS.items()
+    }
+
+
 def part_starts(lengths: list[int]) -> np.ndarray:
     """(n + 1,) int64 places where parts of these lengths begin one behind the other, and their end."""
     return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
@@ -95,3 +114,7 @@ def _runs(indices: list[int]) -> list[list[int]]:
         else:
             runs.append([index])
     return runs
+
+
+def _length(array: np.ndarray | None) -> int:
+    return 0 if array is None else len(array)

@@ -25,7 +25,7 @@ from ..common.instance_columns import InstanceColumns, numbered
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
-from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
+from .gather_inputs import INSTANCE_ENTRY, GatherInputs, array_starts
 from .hit_triangles import HitTriangles
 from .object_triangles import ObjectTriangles
 from .placements import PlacedArrays, PlacedMeshes, Placement, Placements
@@ -45,13 +45,6 @@ Constants("TriangleCodes", ONE_SIDED=_ONE_SIDED)
 Record("GatherParameters", fallback_point="vec3", first_triangle="uint", triangle_count="uint", instance_count="uint")
 
 
-_STARTS = {
-    "mesh_triangle": "triangle_corners",
-    "mesh_corner": "corner_vertices",
-    "mesh_vertex": "positions",
-    "mesh_uv": "corner_uv",
-}
-"""Members of InstanceEntry that are where a mesh's part of such an array begins."""
 _MOST_MATERIALS = 1 << 31
 """Numbers of materials where slots are given, all of which are known."""
 _BLOCK = 256
@@ -132,6 +125,16 @@ class Geometry(BufferSet):
     def center(self) -> np.ndarray:
         """Center of the bounding sphere, (3,) meters."""
         return 0.5 * (self.bounds_low + self.bounds_high)
+
+    @property
+    def placed_meshes(self) -> PlacedMeshes:
+        """Meshes and instances of the placements, once they were built."""
+        return require(self._placed_of)
+
+    @property
+    def mesh_blocks(self) -> Mapping[str, Bindable]:
+        """Storage blocks of the arrays of all meshes and of the instances, which triangles are gathered from."""
+        return self._inputs.blocks
 
     @property
     def expanded(self) -> Sequence[Placement]:
@@ -395,8 +398,8 @@ def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> st
 
 def _locate(entries: np.ndarray, meshes: list[Mesh], which: np.ndarray) -> None:
     """Fill in where the arrays of the mesh of each entry begin; which: (n,), the places of these among the meshes."""
-    for field, member in _STARTS.items():
-        entries[field] = part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
+    for field, starts in array_starts(meshes).items():
+        entries[field] = starts[which]
     entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
 
 
@@ -430,7 +433,3 @@ def _as_slice(indices: np.ndarray) -> np.ndarray | slice:
     """Ascending indices, at least one, as a slice where they follow each other, which copies nothing."""
     first, end = int(indices[0]), int(indices[-1]) + 1
     return slice(first, end) if end - first == len(indices) else indices
-
-
-def _length(array: np.ndarray | None) -> int:
-    return 0 if array is None else len(array)

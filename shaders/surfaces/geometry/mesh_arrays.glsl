@@ -4,8 +4,8 @@
 
 readonly buffer Instances { InstanceEntry instances[]; };
 readonly buffer Positions { float positions[]; };
-readonly buffer CornerVertices { uint corner_vertices[]; };
-readonly buffer TriangleCorners { uint triangle_corners[]; };
+readonly buffer CornerVertices;
+readonly buffer TriangleCorners;
 writeonly buffer Triangles;
 
 vec3 three_floats(uint index) {

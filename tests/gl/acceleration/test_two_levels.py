@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from busy_scenes import SCENES, busy
-from moving_scenes import open_for, way
+from moving_scenes import everything_moves, open_for, way
 from rendering import radiance_of
 from support.lobes import Lobe, LobeKind, material
 
@@ -21,9 +21,8 @@ BALL = 5
 
 
 def in_two_levels(scene: Scene, instancing: Instancing = Instancing.TWO_LEVELS) -> Scene:
-    passes = tuple(name for name in scene.settings.passes if name != VECTOR)
     settings = dataclasses.replace(
-        scene.settings, instancing=instancing, passes=passes, acceleration_structure=AccelerationStructure.BVH
+        scene.settings, instancing=instancing, acceleration_structure=AccelerationStructure.BVH
     )
     return dataclasses.replace(scene, settings=settings)
 
@@ -131,3 +130,32 @@ def test_passes_equal_those_of_expanded_instances(mapper):
     assert {"Depth", "Normal", "Position"} <= set(found[0])
     for name, values in found[0].items():
         np.testing.assert_array_equal(found[1][name], values, err_msg=name)
+
+
+def between_frames() -> Scene:
+    """A ball moves and bends from frame to frame, another bends, one that is mirrored rests, and the camera moves."""
+    scene = with_balls(scenes.placed(0.0, 0.4, 0.4, 0.3) @ np.diag([-1.0, 1.0, 1.0, 1.0]), skewed())
+    neighbors = everything_moves(scene, 0.4).shutter
+    settings = dataclasses.replace(scene.settings, passes=(VECTOR,))
+    return dataclasses.replace(scene, neighbors=neighbors, settings=settings)
+
+
+@pytest.mark.parametrize("offset", [0.0, 50000.0])
+def test_motion_vectors_equal_those_of_expanded_instances(mapper, offset):
+    """At the world's origin and far from it, where vertices are counted from a pivot."""
+    scene, far = between_frames(), scenes.placed(offset, 0.0, 0.0)
+    instances = [dataclasses.replace(item, matrix=far @ item.matrix) for item in scene.instances]
+    camera = dataclasses.replace(scene.camera, matrix=far @ scene.camera.matrix)
+    neighbors = dataclasses.replace(
+        scene.neighbors,
+        instances=[dataclasses.replace(way, matrices=far @ way.matrices) for way in scene.neighbors.instances],
+        camera=dataclasses.replace(scene.neighbors.camera, matrices=far @ scene.neighbors.camera.matrices),
+    )
+    scene = dataclasses.replace(scene, instances=instances, camera=camera, neighbors=neighbors)
+    found = []
+    for instancing in (Instancing.EXPANDED, Instancing.TWO_LEVELS):
+        radiance_of(mapper, in_two_levels(scene, instancing), 2)
+        found.append(mapper.film.read_passes()[VECTOR])
+    assert mapper.device_scene.geometry.instanced is not None
+    assert (found[0] != 0.0).any(axis=2).mean() > 0.9
+    np.testing.assert_array_equal(found[1], found[0])

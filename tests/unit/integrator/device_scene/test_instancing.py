@@ -26,7 +26,7 @@ from rppm_addon.scene import (
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
-from rppm_addon.scene.passes import DEEP_CUBEMAP, VECTOR
+from rppm_addon.scene.passes import DEEP_CUBEMAP
 from rppm_addon.self_test.meshes import placed, rectangle, sphere
 
 PLAIN, GLOWING, FILLED = range(3)
@@ -135,7 +135,6 @@ def test_an_object_that_occurs_once_and_moves():
     "settings",
     [
         {"first_camera_hits": FirstCameraHits.RASTERIZED},
-        {"passes": ("Combined", VECTOR)},
         {"passes": ("Combined", DEEP_CUBEMAP.name)},
     ],
 )
