@@ -70,6 +70,11 @@ class AccelerationStructure(BufferSet):
         targets: dict[str, object] = {"INSTANCED_EMITTERS": 1} if has_emitters else {}
         return {"TRAVERSAL": self.shader, **one_sided, **targets}
 
+    @property
+    def has_instances(self) -> bool:
+        """True where rays place instances in the world, and the structure has two levels."""
+        return self._instanced is not None
+
     def trace(
         self, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths = HitPaths.CAMERA
     ) -> None:

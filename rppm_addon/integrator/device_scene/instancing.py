@@ -4,7 +4,7 @@
 import numpy as np
 
 from ...materials.traits.emitted import emits_alike, glowing_materials
-from ...materials.traits.node_rays import traces_rays
+from ...materials.traits.node_rays import reads_cast_attributes
 from ...scene.meshes import Instance
 from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
@@ -101,7 +101,7 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
         and settings.first_camera_hits in first_hits
         and scene.camera.texels is None
         and DEEP_CUBEMAP.name not in settings.passes
-        and not any(traces_rays(material.graph) for material in scene.materials)
+        and not any(reads_cast_attributes(material.graph) for material in scene.materials)
     )
 
 

@@ -25,6 +25,8 @@ INSTANCE_ENTRY = Record(
     slot_count="uint",
     set_code="float",
 )
+StorageBlock("Instances", "InstanceEntry instances[];")
+StorageBlock("CornerNormals", "float corner_normals[];")
 StorageBlock("CornerVertices", "uint corner_vertices[];")
 StorageBlock("TriangleCorners", "uint triangle_corners[];")
 """Vertices of corners and corners of triangles, each counted from where those of the mesh begin."""

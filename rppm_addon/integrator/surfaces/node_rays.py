@@ -91,6 +91,8 @@ class NodeRays(BufferSet):
         asking for it and its first run. casts: also rays that begin anywhere, of which the program without knows
         nothing."""
         defines = {**traversal.traversal_defines, **({"RAYCASTS": 1} if casts else {})}
+        if traversal.has_instances:
+            defines["NODE_HITS"] = "surfaces/node_rays/two_levels"
         return self._library.compute("surfaces/node_rays/trace.comp", defines)
 
     def trace(
@@ -105,7 +107,7 @@ class NodeRays(BufferSet):
         """Answer what the nodes of a program ask at a level.
 
         program: ``program``'s; order: HitOrder; arguments: its byte where the groups of the dispatch are; buffers:
-        NodeRays, Rays, Hits, Attributes and those of the traversal among others; counts: of the program that asks;
+        NodeRays, Rays, Hits, Attributes, those of the traversal and the arrays of meshes among others; counts: of the program that asks;
         parameters: the others of NodeRaysParameters.
         """
         of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}

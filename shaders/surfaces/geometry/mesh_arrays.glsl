@@ -2,7 +2,7 @@
 // The arrays of all meshes, where those of each instance begin, and the triangles that are made of them.
 #include <InstanceEntry>
 
-readonly buffer Instances { InstanceEntry instances[]; };
+readonly buffer Instances;
 readonly buffer Positions { float positions[]; };
 readonly buffer CornerVertices;
 readonly buffer TriangleCorners;

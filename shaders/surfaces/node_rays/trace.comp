@@ -5,6 +5,10 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl RAYCASTS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse.glsl RAYCASTS=1
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
 // What the nodes of a program's materials ask of rays, some samples of each at a time.
 
 layout(local_size_x = 64) in;
@@ -24,6 +28,7 @@ readonly buffer HitOrder;
 
 #define TRACES_INSTANCES
 #include TRAVERSAL
+#include NODE_HITS "surfaces/node_rays/one_level/hits.glsl"
 #include <NodeRayQueries>
 #include <Ranges>
 
@@ -91,7 +96,7 @@ Ray occlusion_ray(vec3 position, vec3 offset, uint triangle, mat3 axes, float re
 
 // The front's.
 vec3 smooth_normal(Hit hit, vec3 geometric, vec3 b) {
-    vec3 normal = triangle_normal(hit.triangle, b);
+    vec3 normal = normal_of(hit, b);
     return dot(normal, normal) > 1e-12 ? normalize(normal) : geometric;
 }
 
@@ -124,7 +129,7 @@ vec3 keep_cast(uint beside, Hit hit, vec3 direction, uint instance) {
     node_rays[beside].reach = float(hit.triangle >> 16u);
     vec3 geometric = geometric_normal(hit.triangle);
     vec3 normal = smooth_normal(hit, geometric, barycentrics(hit));
-    bool itself = attributes[hit.triangle].instance == instance;
+    bool itself = instance_of(hit) == instance;
     node_rays[beside].found = vec3(hit.distance, 1.0, float(itself));
     return dot(geometric, direction) > 0.0 ? -normal : normal;
 }
@@ -170,7 +175,7 @@ void main() {
 #endif
             int most_hits = bevel ? MOST_BEVEL_HITS : 1;
             for (int hit_number = 0; hit_number < most_hits; ++hit_number) {
-                Hit hit = trace_ray(ray, any_hit);
+                Hit hit = trace_node_ray(ray, any_hit);
 #ifdef RAYCASTS
                 if (is_raycast(kind)) {
                     found = keep_cast(at + 1u, hit, ray.direction, instance);

@@ -94,6 +94,21 @@ def test_what_glows_by_object_or_place_is_expanded():
         assert members_of(glowing_by(kind, output)) == [0, 1, 2], kind
 
 
+def with_node(kind: str, output: str, **members: object) -> Scene:
+    """Balls whose color is what a node gives."""
+    scene = scene_of(*BALLS, **TWO_LEVELS)
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=graph.add(kind, output, **members))
+    scene.materials[PLAIN] = Material("plain", graph)
+    return scene
+
+
+def test_nodes_that_trace_rays_share_triangles_unless_they_read_attributes_of_what_is_hit():
+    for kind, output in (("ambient_occlusion", "color"), ("bevel", "normal"), ("raycast", "hit_normal")):
+        assert members_of(with_node(kind, output)) == [0, 1, 2], kind
+    assert members_of(with_node("cast_attribute", "color")) == []
+
+
 def test_what_glows_and_is_linked_is_expanded():
     scene = with_instance(scene_of(*GLOWING_BALLS, **TWO_LEVELS), 1, linking=LightLinking(light_set_membership=2))
     assert members_of(scene) == [0, 2]
