@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from ...gl.context.context import Context
 from ...materials.traits.emitted import emits_alike, glowing_materials
 from ...materials.traits.node_rays import reads_cast_attributes
 from ...scene.meshes import Instance
@@ -10,13 +11,20 @@ from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
 from ...scene.storage.sharing import changed_members
-from ..common.instance_columns import InstanceColumns
+from ..common.instance_columns import InstanceColumns, column
+from ..common.records.triangles import TRIANGLE_VERTICES
+from ..lights.emitters.candidates import STEPS
 
 MANY_TRIANGLES = 1 << 18
 """Triangles of an expanded scene from which on AUTOMATIC instancing may have two levels: building a hierarchy of fewer
 takes less time than compiling the programs that trace two."""
 _FRACTION_LEFT = 0.1
 """Fraction of an expanded scene's triangles that AUTOMATIC instancing leaves at most, unless things move."""
+
+_EXPANDED_BYTES = 306
+"""Bytes of an expanded triangle with all that is made of it (docs/benchmarks/instances.md)."""
+_FRACTION_OF_MEMORY = 0.75
+"""Fraction of a device's memory that expanded triangles take at most under AUTOMATIC."""
 
 
 class MovedInstances:
@@ -43,6 +51,28 @@ class MovedInstances:
 
 def _has_moved(old: Instance, new: Instance) -> bool:
     return old.mesh == new.mesh and old.matrix.tobytes() != new.matrix.tobytes()
+
+
+def most_expanded_triangles(context: Context) -> int:
+    """Number of expanded triangles that a device holds: in one buffer, and in its memory where that is known."""
+    in_buffer = context.array_limit(16) // TRIANGLE_VERTICES.size
+    memory = context.memory
+    return in_buffer if memory is None else min(in_buffer, int(_FRACTION_OF_MEMORY * memory) // _EXPANDED_BYTES)
+
+
+def fits_expanded(scene: Scene, most_triangles: int) -> bool:
+    """Return True where all instances of a scene have no more than so many triangles, and no more of these may emit
+    light than can be chosen from."""
+    lengths = np.array([mesh.triangle_count for mesh in scene.meshes], np.int64)
+    few = min(most_triangles, STEPS)
+    if len(scene.instances) * int(lengths.max(initial=0)) <= few:  # without a look at a million instances
+        return True
+    counts = lengths[column(scene.instances, "mesh", np.int64)]
+    if counts.sum() <= few or counts.sum() > most_triangles:
+        return bool(counts.sum() <= most_triangles)
+    glowing = glowing_materials(scene.materials)
+    glows = np.array([not glowing.isdisjoint(instance.materials) for instance in scene.instances], bool)
+    return bool(counts[glows].sum() <= STEPS)
 
 
 def instanced_members(

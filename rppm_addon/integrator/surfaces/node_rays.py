@@ -107,7 +107,8 @@ class NodeRays(BufferSet):
         """Answer what the nodes of a program ask at a level.
 
         program: ``program``'s; order: HitOrder; arguments: its byte where the groups of the dispatch are; buffers:
-        NodeRays, Rays, Hits, Attributes, those of the traversal and the arrays of meshes among others; counts: of the program that asks;
+        NodeRays, Rays, Hits, Attributes, those of the traversal and the arrays of meshes among others; counts: of the
+        program that asks;
         parameters: the others of NodeRaysParameters.
         """
         of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Nodes that trace rays find the same on instances that rays place in the world as on expanded ones, bit for bit."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 import scenes

@@ -10,7 +10,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.common.instance_columns import InstanceColumns
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.device_scene import instancing
-from rppm_addon.integrator.device_scene.instancing import MovedInstances, instanced_members
+from rppm_addon.integrator.device_scene.instancing import MovedInstances, fits_expanded, instanced_members
 from rppm_addon.scene import (
     AccelerationStructure,
     Camera,
@@ -201,3 +201,15 @@ def test_volumes_and_a_deep_cubemap_leave_no_blocks_for_two_levels():
     assert members_of(scene_of(*members, **TWO_LEVELS)) == [0, 1]
     cubemap = scene_of(*members, **TWO_LEVELS, acceleration_structure=AccelerationStructure.DEEP_CUBEMAP)
     assert members_of(cubemap) == []
+
+
+def test_scenes_that_fit_expanded(monkeypatch):
+    """By all triangles, of which a ball has 960, and by those that emit light."""
+    scene = scene_of(*BALLS, (0, GLOWING), (1, PLAIN))
+    assert fits_expanded(scene, 4 * 960 + 2) and not fits_expanded(scene, 4 * 960 + 1)
+    assert fits_expanded(scene_of(), 0)
+    monkeypatch.setattr(instancing, "STEPS", 960)
+    assert fits_expanded(scene, 4 * 960 + 2)
+    monkeypatch.setattr(instancing, "STEPS", 959)
+    assert not fits_expanded(scene, 4 * 960 + 2)
+    assert fits_expanded(scene_of(*BALLS, (1, GLOWING)), 4 * 960)
