@@ -81,10 +81,10 @@ def instanced_members(
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
     These are instances of meshes that occur more than once, or that move, and that keep their shape while the shutter
-    is open; their materials fill the inside with no medium. Those that emit light are such of meshes that occur more
-    than once, with materials that emit the same from all, without Light Linking, in scenes without media and shadow
-    catchers. columns: of the scene's instances, at any moment; moved: MovedInstances.follow. is_software: whether the
-    processor stands in for a GPU.
+    is open, but for one that is baked; their materials fill the inside with no medium. Those that emit light are such
+    of meshes that occur more than once, with materials that emit the same from all, without Light Linking, in scenes
+    without media and shadow catchers. columns: of the scene's instances, at any moment; moved: MovedInstances.follow.
+    is_software: whether the processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
     if wanted is Instancing.EXPANDED or not _may_have_two_levels(scene, is_software):
@@ -114,7 +114,10 @@ def _may_be_instanced(scene: Scene, columns: InstanceColumns, glowing: set[int])
     excluded |= {number for number, material in enumerate(scene.materials) if material.interior is not None}
     bending = {deformation.mesh for deformation in scene.shutter.meshes} if scene.shutter is not None else set()
     whole = np.array([index not in bending and mesh.volume is None for index, mesh in enumerate(scene.meshes)])
-    return whole[columns.meshes] & ~columns.have(excluded)
+    result = whole[columns.meshes] & ~columns.have(excluded)
+    if scene.camera.texels is not None:  # which know the triangles of what is baked by number
+        result[scene.camera.texels.instance] = False
+    return result
 
 
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
@@ -129,7 +132,6 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     return (
         not (has_cubemap and _has_media(scene))  # programs of both would need more storage blocks than devices have
         and settings.first_camera_hits in first_hits
-        and scene.camera.texels is None
         and DEEP_CUBEMAP.name not in settings.passes
         and not any(reads_cast_attributes(material.graph) for material in scene.materials)
     )

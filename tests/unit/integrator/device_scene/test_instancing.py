@@ -22,6 +22,7 @@ from rppm_addon.scene import (
     RenderSettings,
     Scene,
     Shutter,
+    Texels,
 )  # fmt: skip
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
@@ -125,6 +126,13 @@ def test_what_bends_is_expanded():
     mesh = scene.meshes[0]
     bending = Deformation(0, KEYS, np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
     assert members_of(dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[bending]))) == []
+
+
+def test_what_is_baked_is_expanded():
+    scene = scene_of(*BALLS, **TWO_LEVELS)
+    nothing = np.zeros((8, 8, 4), np.float32)
+    texels = Texels(1, np.full((8, 8), -1, np.int32), nothing[..., :2], nothing)
+    assert members_of(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, texels=texels))) == [0, 2]
 
 
 def test_few_triangles_are_expanded_unless_asked_for(monkeypatch):
