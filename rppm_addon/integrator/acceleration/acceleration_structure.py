@@ -71,6 +71,12 @@ class AccelerationStructure(BufferSet):
         return {"TRAVERSAL": self.shader, **one_sided, **targets}
 
     @property
+    def lean_traversal_defines(self) -> dict[str, object]:
+        """Defines of kernels which include TRAVERSAL and have few storage blocks left for it: traversal_defines, where
+        the structure does with these blocks."""
+        return self.traversal_defines
+
+    @property
     def has_instances(self) -> bool:
         """True where rays place instances in the world, and the structure has two levels."""
         return self._instanced is not None

@@ -82,7 +82,6 @@ def _levels(scene: Scene) -> tuple[object, ...]:
     return (
         settings.instancing,
         settings.first_camera_hits,
-        settings.acceleration_structure,
         DEEP_CUBEMAP.name in settings.passes,
         None if texels is None else texels.instance,
     )

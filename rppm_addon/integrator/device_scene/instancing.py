@@ -9,7 +9,7 @@ from ...materials.traits.node_rays import reads_cast_attributes
 from ...scene.meshes import Instance
 from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
-from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
+from ...scene.settings import FirstCameraHits, Instancing
 from ...scene.storage.sharing import changed_members
 from ..common.instance_columns import InstanceColumns, column
 from ..common.records.triangles import TRIANGLE_VERTICES
@@ -125,13 +125,8 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     settings = scene.settings
     is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
-    kind = settings.acceleration_structure
-    has_cubemap = kind is AccelerationStructure.DEEP_CUBEMAP or (
-        kind is AccelerationStructure.AUTOMATIC and not is_software
-    )
     return (
-        not (has_cubemap and _has_media(scene))  # programs of both would need more storage blocks than devices have
-        and settings.first_camera_hits in first_hits
+        settings.first_camera_hits in first_hits
         and DEEP_CUBEMAP.name not in settings.passes
         and not any(reads_cast_attributes(material.graph) for material in scene.materials)
     )
