@@ -247,6 +247,7 @@ class ProgressivePhotonMapper:
 
     def build_deep_cubemap(self, scene: Scene) -> None:
         """Take a scene and build its deep cubemap, to be looked at: nothing can be rendered. Raises as build does."""
+        scene = self.device_scene.acceleration.settled(scene)
         self._begin(scene)
         self.device_scene.upload_geometry(scene)
 

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ...scene.node_graphs import Link, NodeGraph
-from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
 from ...scene.storage.sharing import LISTS, same_members
 
@@ -82,7 +81,6 @@ def _levels(scene: Scene) -> tuple[object, ...]:
     return (
         settings.instancing,
         settings.first_camera_hits,
-        DEEP_CUBEMAP.name in settings.passes,
         None if texels is None else texels.instance,
     )
 

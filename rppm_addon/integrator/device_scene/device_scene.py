@@ -138,7 +138,8 @@ class DeviceScene:
         self.materials.build(scene)
         scene = self.displacement.displaced(scene, self.materials, True)
         self._take(scene)
-        self.geometry.build(scene, self.materials.default_material)
+        instanced = functools.partial(self.acceleration.instanced_members, scene)
+        self.geometry.build(scene, self.materials.default_material, instanced=instanced)
         self.acceleration.build(scene, self.geometry, AccelerationStructure.DEEP_CUBEMAP)
 
     def move_to(self, iteration: Iteration) -> None:

@@ -7,7 +7,6 @@ from ...gl.context.context import Context
 from ...materials.traits.emitted import emits_alike, glowing_materials
 from ...materials.traits.node_rays import reads_cast_attributes
 from ...scene.meshes import Instance
-from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits, Instancing
 from ...scene.storage.sharing import changed_members
@@ -125,10 +124,8 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     settings = scene.settings
     is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
-    return (
-        settings.first_camera_hits in first_hits
-        and DEEP_CUBEMAP.name not in settings.passes
-        and not any(reads_cast_attributes(material.graph) for material in scene.materials)
+    return settings.first_camera_hits in first_hits and not any(
+        reads_cast_attributes(material.graph) for material in scene.materials
     )
 
 

@@ -27,7 +27,6 @@ from rppm_addon.scene import (
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
-from rppm_addon.scene.passes import DEEP_CUBEMAP
 from rppm_addon.self_test.meshes import placed, rectangle, sphere
 
 PLAIN, GLOWING, FILLED = range(3)
@@ -154,16 +153,9 @@ def test_an_object_that_occurs_once_and_moves():
     assert members_of(scene_of((0, GLOWING), (1, PLAIN), **TWO_LEVELS), moved=(0,)) == []
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {"first_camera_hits": FirstCameraHits.RASTERIZED},
-        {"passes": ("Combined", DEEP_CUBEMAP.name)},
-    ],
-)
-def test_what_looks_at_world_triangles_has_one_level(settings):
+def test_rasterized_first_hits_need_world_triangles():
     assert members_of(scene_of(*BALLS, **TWO_LEVELS)) != []
-    assert members_of(scene_of(*BALLS, **TWO_LEVELS, **settings)) == []
+    assert members_of(scene_of(*BALLS, **TWO_LEVELS, first_camera_hits=FirstCameraHits.RASTERIZED)) == []
 
 
 @pytest.mark.parametrize("structure", AccelerationStructure)
