@@ -30,7 +30,7 @@ class Changes:
     cubemap: bool
     """Where the deep cubemap is asked to be, and how fine."""
     levels: bool
-    """What the settings and the camera say of which instances are expanded (instancing.py)."""
+    """Settings, and what is baked, by which instances are expanded (instancing.py)."""
 
 
 def changes_between(before: Scene | None, after: Scene) -> Changes:

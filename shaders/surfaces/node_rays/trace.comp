@@ -8,7 +8,7 @@
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
 // lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels
-// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
 // What the nodes of a program's materials ask of rays, some samples of each at a time.
 
 layout(local_size_x = 64) in;
