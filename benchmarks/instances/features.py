@@ -38,7 +38,7 @@ from rppm_addon.scene import (
     Texels,
     World,
 )
-from rppm_addon.scene.motion import Movement, Shutter
+from rppm_addon.scene.motion import Deformation, Movement, Shutter
 from rppm_addon.self_test.meshes import looking, rectangle
 
 from .. import ROOT
@@ -117,6 +117,16 @@ def with_vectors(scene: Scene) -> Scene:
     return dataclasses.replace(scene, neighbors=Shutter(np.ones(1), swaying), settings=settings)
 
 
+def with_wind(scene: Scene) -> Scene:
+    """The tree bends while the shutter is open."""
+    mesh = scene.meshes[TREE]
+    bent = mesh.positions + np.float32([0.05, 0.0, 0.0]) * mesh.positions[:, 2:]
+    deformation = Deformation(
+        TREE, np.array([0.0, 1.0]), np.stack([mesh.positions, bent]), np.stack([mesh.corner_normals] * 2)
+    )
+    return dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[deformation]))
+
+
 def with_bake(scene: Scene) -> Scene:
     """A texture of the ground."""
     width, height = _SIZE
@@ -159,6 +169,7 @@ FEATURES: dict[str, Callable[[Scene], Scene]] = {
     "Bevel": with_leaves(lambda: by_node("bevel", "normal", samples=4.0, radius=0.02)),
     "Raycast": with_leaves(raycast),
     "baking": with_bake,
+    "motion blur of a mesh that bends": with_wind,
     "fog, deep cubemap": with_fog,
     "pass Deep Cubemap": with_settings(passes=("Deep Cubemap",)),
 }

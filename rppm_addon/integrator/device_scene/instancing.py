@@ -6,7 +6,7 @@ import numpy as np
 from ...gl.context.context import Context
 from ...materials.traits.emitted import emits_alike, glowing_materials
 from ...materials.traits.node_rays import reads_cast_attributes
-from ...scene.meshes import Instance
+from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits, Instancing
 from ...scene.storage.sharing import changed_members
@@ -27,29 +27,48 @@ _FRACTION_OF_MEMORY = 0.75
 
 
 class MovedInstances:
-    """Instances that have moved from scene to scene, or move while the shutter is open."""
+    """Instances that have moved or bent from scene to scene, or do so while the shutter is open."""
 
     def __init__(self) -> None:
         self._instances: list[Instance] = []
+        self._meshes: list[Mesh] = []
         self._have_moved = np.zeros(0, bool)
-        """(instances,) those that have moved from scene to scene."""
+        """(instances,) those that have moved or bent from scene to scene."""
 
     def follow(self, scene: Scene) -> np.ndarray:
-        """Take a scene; returns (instances,) bool, those that moved, as far as the scenes had the same instances."""
+        """Take a scene; returns (instances,) bool, those that moved or bend, as far as the scenes had the same
+        instances."""
         before, self._instances = self._instances, list(scene.instances)
+        meshes, self._meshes = self._meshes, list(scene.meshes)
         if len(before) != len(scene.instances):
             self._have_moved = np.zeros(len(scene.instances), bool)
         else:
             rows = changed_members(before, scene.instances).tolist()
             self._have_moved[[row for row in rows if _has_moved(before[row], scene.instances[row])]] = True
+            if len(meshes) == len(scene.meshes):
+                rows = changed_members(meshes, scene.meshes).tolist()
+                bent = [row for row in rows if _has_bent(meshes[row], scene.meshes[row])]
+                self._have_moved |= _instances_of(bent, scene)
         result = self._have_moved.copy()
         if scene.shutter is not None:
             result[[movement.member for movement in scene.shutter.instances]] = True
+            result |= _instances_of([deformation.mesh for deformation in scene.shutter.meshes], scene)
         return result
 
 
 def _has_moved(old: Instance, new: Instance) -> bool:
     return old.mesh == new.mesh and old.matrix.tobytes() != new.matrix.tobytes()
+
+
+def _has_bent(old: Mesh, new: Mesh) -> bool:
+    return old.positions is not new.positions and not np.array_equal(old.positions, new.positions)
+
+
+def _instances_of(meshes: list[int], scene: Scene) -> np.ndarray:
+    """(instances,) bool, those of meshes by number."""
+    if not meshes:
+        return np.zeros(len(scene.instances), bool)
+    return np.isin(column(scene.instances, "mesh", np.int64), meshes)
 
 
 def most_expanded_triangles(context: Context) -> int:
@@ -79,11 +98,11 @@ def instanced_members(
 ) -> np.ndarray | None:
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
-    These are instances of meshes that occur more than once, or that move, and that keep their shape while the shutter
-    is open, but for one that is baked; their materials fill the inside with no medium. Those that emit light are such
-    of meshes that occur more than once, with materials that emit the same from all, without Light Linking, in scenes
-    without media and shadow catchers. columns: of the scene's instances, at any moment; moved: MovedInstances.follow.
-    is_software: whether the processor stands in for a GPU.
+    These are instances of meshes that occur more than once, or that move or bend, but for one that is baked; their
+    materials fill the inside with no medium. Those that emit light are such of meshes that occur more than once, and
+    keep their shape while the shutter is open, with materials that emit the same from all, without Light Linking, in
+    scenes without media and shadow catchers. columns: of the scene's instances, at any moment; moved:
+    MovedInstances.follow. is_software: whether the processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
     if wanted is Instancing.EXPANDED or not _may_have_two_levels(scene, is_software):
@@ -111,8 +130,7 @@ def _may_be_instanced(scene: Scene, columns: InstanceColumns, glowing: set[int])
     """(instances,) bool. glowing: the materials that emit light."""
     excluded = {number for number in glowing if not emits_alike(scene.materials[number].graph)}
     excluded |= {number for number, material in enumerate(scene.materials) if material.interior is not None}
-    bending = {deformation.mesh for deformation in scene.shutter.meshes} if scene.shutter is not None else set()
-    whole = np.array([index not in bending and mesh.volume is None for index, mesh in enumerate(scene.meshes)])
+    whole = np.array([mesh.volume is None for mesh in scene.meshes], bool)
     result = whole[columns.meshes] & ~columns.have(excluded)
     if scene.camera.texels is not None:  # which know the triangles of what is baked by number
         result[scene.camera.texels.instance] = False
@@ -138,4 +156,5 @@ def _may_share_emitters(scene: Scene, columns: InstanceColumns) -> np.ndarray:
     those of shadow catchers, know world triangles alone."""
     if _has_media(scene) or columns.catch_shadows.any():
         return np.zeros(len(scene.instances), bool)
-    return ~columns.are_linked
+    bending = [deformation.mesh for deformation in scene.shutter.meshes] if scene.shutter is not None else []
+    return ~columns.are_linked & ~np.isin(columns.meshes, bending)

@@ -11,7 +11,8 @@ from moving_scenes import everything_moves, open_for, way
 from rendering import radiance_of
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.bvh import bottom_levels
+from rppm_addon.integrator.bvh import bottom_levels, bvh
+from rppm_addon.integrator.device_scene import instancing as rule
 from rppm_addon.scene import AccelerationStructure, Instance, Instancing, Scene
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.passes import VECTOR
@@ -86,7 +87,7 @@ def test_pictures_equal_those_of_expanded_instances(mapper, name):
     expanded = radiance_of(mapper, in_two_levels(make(), Instancing.EXPANDED), 2)
     assert mapper.device_scene.geometry.instanced is None
     in_levels = radiance_of(mapper, in_two_levels(make()), 2)
-    assert (mapper.device_scene.geometry.instanced is not None) == (name != "motion")  # its ball bends
+    assert mapper.device_scene.geometry.instanced is not None
     np.testing.assert_array_equal(in_levels, expanded)
 
 
@@ -107,6 +108,36 @@ def test_moving_an_instance_builds_no_bottom_level(mapper, other_mapper, monkeyp
     mapper.iterate()
     monkeypatch.undo()
     np.testing.assert_array_equal(mapper.film.read_radiance(), radiance_of(other_mapper, changed))
+
+
+def bent(scene: Scene, member: int) -> Scene:
+    """The scene with another shape of the mesh of an instance."""
+    meshes = [*scene.meshes]
+    number = scene.instances[member].mesh
+    meshes[number] = dataclasses.replace(meshes[number], positions=meshes[number].positions * np.float32([1.0, 0.9, 1]))
+    return dataclasses.replace(scene, meshes=meshes)
+
+
+def test_what_bends_from_scene_to_scene_rebuilds_its_own(mapper, other_mapper, monkeypatch):
+    """Automatic takes it out of the world triangles when it bends, and builds these no more."""
+    monkeypatch.setattr(rule, "MANY_TRIANGLES", 1)
+    scene = in_two_levels(busy(), Instancing.AUTOMATIC)
+    mapper.build(scene)
+    assert mapper.device_scene.geometry.instanced is None
+    scene = bent(scene, BALL)
+    mapper.update(scene)
+    built = []
+    nodes = bvh.triangle_nodes
+    monkeypatch.setattr(bvh, "triangle_nodes", lambda *arguments: built.append(arguments) or nodes(*arguments))
+    scene = bent(scene, BALL)
+    mapper.update(scene)
+    assert not built
+    mapper.iterate()
+    instanced = mapper.device_scene.geometry.instanced
+    assert instanced is not None and [mesh.name for mesh in instanced.meshes] == [scene.meshes[BALL].name]
+    expected = radiance_of(other_mapper, scene)
+    assert other_mapper.device_scene.geometry.instanced is None
+    np.testing.assert_array_equal(mapper.film.read_radiance(), expected)
 
 
 def test_memory_does_not_grow_with_the_triangles_of_instances(mapper):

@@ -120,11 +120,17 @@ def test_what_glows_beside_media_and_catchers_is_expanded():
     assert members_of(caught) == []
 
 
-def test_what_bends_is_expanded():
-    scene = scene_of(*BALLS, **TWO_LEVELS)
-    mesh = scene.meshes[0]
-    bending = Deformation(0, KEYS, np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
-    assert members_of(dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[bending]))) == []
+def bending(scene: Scene, number: int = 0) -> Scene:
+    """The scene with a mesh that bends while the shutter is open."""
+    mesh = scene.meshes[number]
+    deformation = Deformation(number, KEYS, np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
+    return dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[deformation]))
+
+
+def test_what_bends_shares_its_triangles_unless_it_glows():
+    assert members_of(bending(scene_of(*BALLS, (1, PLAIN), **TWO_LEVELS))) == [0, 1, 2]
+    assert members_of(bending(scene_of(*GLOWING_BALLS, (0, PLAIN), (0, PLAIN), **TWO_LEVELS))) == [3, 4]
+    assert members_of(bending(scene_of(*GLOWING_BALLS, (1, PLAIN), **TWO_LEVELS), 1)) == [0, 1, 2]
 
 
 def test_what_is_baked_is_expanded():
@@ -190,10 +196,23 @@ def test_instances_that_move_from_scene_to_scene():
     assert moved_in(first, second, scene_of(*BALLS, (1, PLAIN))) == []
 
 
+def test_instances_of_meshes_that_bend_from_scene_to_scene():
+    first = scene_of(*BALLS, (1, PLAIN))
+    wall = first.meshes[1]
+    second = dataclasses.replace(
+        first, meshes=[first.meshes[0], dataclasses.replace(wall, positions=2 * wall.positions)]
+    )
+    assert moved_in(first, second) == moved_in(first, second, second) == [3]
+    copied = dataclasses.replace(first, meshes=[first.meshes[0], dataclasses.replace(wall, positions=+wall.positions)])
+    assert moved_in(first, copied) == []
+    assert moved_in(first, dataclasses.replace(second, meshes=[*second.meshes, wall])) == []
+
+
 def test_instances_that_move_while_the_shutter_is_open():
     scene = scene_of(*BALLS)
     movement = Movement(2, KEYS, np.stack([placed(0, 0, 0), placed(0, 0, 1)]))
     assert moved_in(dataclasses.replace(scene, shutter=Shutter(np.ones(4), instances=[movement]))) == [2]
+    assert moved_in(bending(scene_of(*BALLS, (1, PLAIN)), 1)) == [3]
 
 
 @pytest.mark.parametrize("structure", AccelerationStructure)
