@@ -5,7 +5,6 @@ import numpy as np
 
 from ...gl.context.context import Context
 from ...materials.traits.emitted import emits_alike, glowing_materials
-from ...materials.traits.node_rays import reads_cast_attributes
 from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits, Instancing
@@ -142,9 +141,7 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     settings = scene.settings
     is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
-    return settings.first_camera_hits in first_hits and not any(
-        reads_cast_attributes(material.graph) for material in scene.materials
-    )
+    return settings.first_camera_hits in first_hits
 
 
 def _has_media(scene: Scene) -> bool:

@@ -3,7 +3,6 @@
 
 from ...scene.node_graphs import NodeGraph
 from ..nodes import KINDS
-from ..nodes.geometry import CAST_ATTRIBUTE
 
 RAYCAST = "raycast"
 """The kind whose rays begin anywhere."""
@@ -17,8 +16,3 @@ def traces_rays(graph: NodeGraph) -> bool:
 def casts_rays(graph: NodeGraph) -> bool:
     """Whether any of its nodes sends a ray from anywhere, as Raycast does."""
     return any(node.kind == RAYCAST for node in graph.nodes)
-
-
-def reads_cast_attributes(graph: NodeGraph) -> bool:
-    """Whether any of its nodes reads an attribute of what a Raycast has met."""
-    return any(node.kind == CAST_ATTRIBUTE for node in graph.nodes)

@@ -23,7 +23,7 @@ COUNT = 4200
 """Leaves: from 4096 on, a top level leaves those where they are that rest."""
 
 
-def leafy() -> Scene:
+def leafy(count: int = COUNT) -> Scene:
     """A room with a heap of leaves of two kinds, each an instance."""
     two_levels = {"instancing": Instancing.TWO_LEVELS, "acceleration_structure": AccelerationStructure.BVH}
     scene = scenes.room(16, photons=500, **two_levels)
@@ -33,7 +33,7 @@ def leafy() -> Scene:
         rectangle("tile", (-2, -1, 0), (2, -1, 0), (2, 1, 0), (-2, 1, 0.5)),
     ]
     rng = np.random.default_rng(7)
-    for place in rng.uniform(-0.6, 0.6, (COUNT, 3)):
+    for place in rng.uniform(-0.6, 0.6, (count, 3)):
         matrix = scenes.placed(*place, 0.02)
         matrix[:3, :3] = matrix[:3, :3] @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
         scene.instances.append(Instance(first + int(rng.integers(2)), matrix, [0], "leaf", random=float(rng.uniform())))
@@ -131,12 +131,12 @@ def with_settings(**settings: object) -> Callable[[Scene], Scene]:
 
 
 def test_edits_of_materials_and_settings_decide_anew_what_is_expanded(mapper, other_mapper):
-    scene = leafy()
+    scene = leafy(200)
     mapper.build(scene)
     for edit, count, has_emitters in (
-        (glowing_leaves, COUNT, True),
+        (glowing_leaves, 200, True),
         (with_settings(instancing=Instancing.EXPANDED), 0, False),
-        (with_settings(instancing=Instancing.TWO_LEVELS), COUNT, True),
+        (with_settings(instancing=Instancing.TWO_LEVELS), 200, True),
         (with_settings(first_camera_hits=FirstCameraHits.RASTERIZED), 0, False),
     ):
         scene = edit(scene)

@@ -8,12 +8,14 @@ from rendering import radiance_of
 
 from rppm_addon.scene import (
     AccelerationStructure,
+    AttributeDomain,
     Instance,
     Instancing,
     Light,
     LightKind,
     Link,
     Material,
+    MeshAttribute,
     NodeGraph,
     Scene,
 )
@@ -39,6 +41,17 @@ def casting() -> Material:
     return Material("casting", graph)
 
 
+def tinted() -> Material:
+    """Has the color that an attribute has where a ray from above meets something."""
+    graph = NodeGraph()
+    above = graph.add("vector_math", "vector", vector=graph.add("new_geometry", "position"), vector_001=(0.1, 0.1, 1.0))
+    found = graph.add("raycast", "hit_normal", position=above, direction=(0.2, 0.3, -1.0), length=1.5)
+    places = {"triangle": Link(found.node, "hit_triangle"), "barycentrics": Link(found.node, "hit_barycentrics")}
+    color = graph.add("cast_attribute", "color", attribute="Tint", **places)
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=color)
+    return Material("tinted", graph)
+
+
 NODES = {
     "occlusion": lambda: colored("ambient_occlusion", "color", distance=1.0),
     "occlusion by the object": lambda: colored(
@@ -46,6 +59,7 @@ NODES = {
     ),
     "bevel": lambda: colored("bevel", "normal", radius=0.3),
     "raycast": casting,
+    "attributes of what a raycast meets": tinted,
 }
 
 
@@ -59,10 +73,14 @@ def crowd(surface: Material, instancing: Instancing, structure: AccelerationStru
     )  # fmt: skip
     del scene.instances[1:]
     random = np.random.default_rng(7)
+    for mesh in scene.meshes:
+        values = random.random((len(mesh.positions), 3)).astype(np.float32)
+        mesh.attributes["Tint"] = MeshAttribute(AttributeDomain.POINT, values)
     for number in range(24):
         matrix = scenes.placed(*random.uniform((-1.2, -1.0, 0.0), (1.2, 1.4, 0.5)))
         matrix[:3, :3] = random.normal(size=(3, 3)) * 0.1 + np.eye(3) * (0.25 if number % 3 else -0.25)
-        scene.instances.append(Instance(1 + number % 2, matrix, [1]))
+        own = {"Tint": (0.9, 0.1, 0.2)} if number == 5 else {}
+        scene.instances.append(Instance(1 + number % 2, matrix, [1], attributes=own))
     return scene
 
 

@@ -19,6 +19,12 @@ uint instance_of(Hit hit) {
     return bottom_level_instances[origin.x].placement;
 }
 
+uint mesh_triangle_of(Hit hit) {
+    uvec2 origin;
+    if (!find_origin(hit.triangle, origin)) return attributes[hit.triangle].mesh_triangle;
+    return origin.y;
+}
+
 vec3 normal_of(Hit hit, vec3 b) {
     uvec2 origin;
     if (!find_origin(hit.triangle, origin)) return triangle_normal(hit.triangle, b);

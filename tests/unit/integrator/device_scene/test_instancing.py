@@ -103,10 +103,9 @@ def with_node(kind: str, output: str, **members: object) -> Scene:
     return scene
 
 
-def test_nodes_that_trace_rays_share_triangles_unless_they_read_attributes_of_what_is_hit():
+def test_nodes_that_trace_rays_share_triangles():
     for kind, output in (("ambient_occlusion", "color"), ("bevel", "normal"), ("raycast", "hit_normal")):
         assert members_of(with_node(kind, output)) == [0, 1, 2], kind
-    assert members_of(with_node("cast_attribute", "color")) == []
 
 
 def test_what_glows_and_is_linked_is_expanded():
