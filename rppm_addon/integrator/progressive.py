@@ -60,6 +60,7 @@ class ProgressivePhotonMapper:
         Nobody may change members of the scene before. Raises as build does.
         """
         start = time.perf_counter()
+        scene = self.device_scene.acceleration.settled(scene)
         self._begin(scene, demands)
         if self._stages is None:  # before the scene, so that their programs are compiled meanwhile
             self._stages = StageSet(self.context, self._library, scene, demands)
@@ -82,6 +83,7 @@ class ProgressivePhotonMapper:
         """Have those programs made, for the first run of which there is nothing to do yet, that pictures of this size,
         these settings and materials need, but for the materials' own; there is nothing to iterate then. Raises as build
         does."""
+        scene = self.device_scene.acceleration.settled(scene)
         self._begin(scene, demands)
         self._stages = StageSet(self.context, self._library, scene, demands)
         self._release_stages()
@@ -245,6 +247,7 @@ class ProgressivePhotonMapper:
 
     def build_deep_cubemap(self, scene: Scene) -> None:
         """Take a scene and build its deep cubemap, to be looked at: nothing can be rendered. Raises as build does."""
+        scene = self.device_scene.acceleration.settled(scene)
         self._begin(scene)
         self.device_scene.upload_geometry(scene)
 

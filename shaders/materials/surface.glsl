@@ -97,13 +97,17 @@ vec4 attribute_corner(uvec2 place, uint local_triangle, uint corner) {
     return value;
 }
 
+// An attribute within a triangle of the instance; 0 without the attribute.
+vec4 attribute_within(uvec2 place, uint local_triangle, vec3 b) {
+    if (place.y == 0u) return vec4(0.0);
+    return b.x * attribute_corner(place, local_triangle, 0u) + b.y * attribute_corner(place, local_triangle, 1u)
+           + b.z * attribute_corner(place, local_triangle, 2u);
+}
+
 vec4 attribute_value(Surface surface, uint layer) {
     uvec2 place = attribute_place(surface, layer);
     if (place.y == 0u) return vec4(0.0);
-    uint local = attributes[surface.triangle].mesh_triangle;
-    return surface.barycentrics.x * attribute_corner(place, local, 0u)
-           + surface.barycentrics.y * attribute_corner(place, local, 1u)
-           + surface.barycentrics.z * attribute_corner(place, local, 2u);
+    return attribute_within(place, attributes[surface.triangle].mesh_triangle, surface.barycentrics);
 }
 #endif
 

@@ -4,6 +4,7 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
 // lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
 // lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1
 // The media at the middle of each light object, and behind them at the camera.
 
 layout(local_size_x = 64) in;

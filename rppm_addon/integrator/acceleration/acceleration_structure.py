@@ -70,6 +70,17 @@ class AccelerationStructure(BufferSet):
         targets: dict[str, object] = {"INSTANCED_EMITTERS": 1} if has_emitters else {}
         return {"TRAVERSAL": self.shader, **one_sided, **targets}
 
+    @property
+    def lean_traversal_defines(self) -> dict[str, object]:
+        """Defines of kernels which include TRAVERSAL and have few storage blocks left for it: traversal_defines, where
+        the structure does with these blocks."""
+        return self.traversal_defines
+
+    @property
+    def has_instances(self) -> bool:
+        """True where rays place instances in the world, and the structure has two levels."""
+        return self._instanced is not None
+
     def trace(
         self, rays: moderngl.Buffer, hits: moderngl.Buffer, active: ActivePaths, paths: HitPaths = HitPaths.CAMERA
     ) -> None:

@@ -70,11 +70,12 @@ class TexelHits(CameraHits):
 
 
 def _placement_of(context: StageContext, texels: Texels) -> Placement:
-    instance = context.scene.instances[texels.instance]
-    for placement in context.geometry.placements:
-        if placement.instance is instance:
-            return placement
-    raise SceneError(f'object "{instance.object_name}" has no faces that can be baked; give its mesh some')
+    chosen = context.geometry.placed_meshes.chosen
+    number = int(np.searchsorted(chosen, texels.instance))
+    if number < len(chosen) and chosen[number] == texels.instance:
+        return context.geometry.placements[number]
+    name = context.scene.instances[texels.instance].object_name
+    raise SceneError(f'object "{name}" has no faces that can be baked; give its mesh some')
 
 
 def texel_records(camera: Camera, texels: Texels, placement: Placement, view: np.ndarray) -> np.ndarray:

@@ -144,6 +144,12 @@ class DeepCubemap(AccelerationStructure):
         return {**super().traversal_defines, **texel_buffers, **self._clusters.defines, **levels}
 
     @property
+    def lean_traversal_defines(self) -> dict[str, object]:
+        """AccelerationStructure.lean_traversal_defines: two levels take two blocks more than one, and cells and entries
+        are texels in their place."""
+        return {**self.traversal_defines, **({TEXEL_BUFFERS: 1} if self.has_instances else {})}
+
+    @property
     def route(self) -> str | None:
         """Way in which triangles are found in cells; None where that has not been decided yet."""
         return self._builder.route

@@ -17,7 +17,9 @@ def inspect_deep_cubemap(
 ) -> np.ndarray:
     """(height, width, 4) float32: CUBEMAP_COSTS of the rays through the pixels' centers, row 0 at the bottom."""
     width, height = camera.resolution
-    program = library.compute("deep_cubemap/inspect.comp", {"COUNT_TRAVERSAL": 1, **deep_cubemap.traversal_defines})
+    levels = {"CUBEMAP_LEVELS": 1} if deep_cubemap.has_instances else {}
+    defines = {"COUNT_TRAVERSAL": 1, **levels, **deep_cubemap.traversal_defines}
+    program = library.compute("deep_cubemap/inspect.comp", defines)
     view_buffer, result = GrowingBuffer(context, "camera"), GrowingBuffer(context, "inspection", "lower the resolution")
     picture = np.zeros((height, width, 4), np.float32)
     try:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Acceleration: which structure a scene's rays are traced through, and when it is built anew."""
 
+import dataclasses
+
 import numpy as np
 
 from ...gl.context.context import Context
@@ -8,6 +10,7 @@ from ...gl.programs.programs import ProgramLibrary
 from ...scene.passes import DEEP_CUBEMAP
 from ...scene.scene import Scene
 from ...scene.settings import AccelerationStructure as Kind
+from ...scene.settings import Instancing
 from ..acceleration.acceleration_structure import AccelerationStructure
 from ..bvh.bvh import Bvh
 from ..common.instance_columns import InstanceColumns
@@ -16,7 +19,7 @@ from ..deep_cubemap.deep_cubemap import DeepCubemap
 from ..deep_cubemap.placement import cubemap_centers, radius_about
 from ..surfaces.geometry import Geometry
 from .changes import Changes
-from .instancing import MovedInstances, instanced_members
+from .instancing import MovedInstances, fits_expanded, instanced_members, most_expanded_triangles
 
 _MAX_CORE_TRIANGLES = 64
 
@@ -50,6 +53,17 @@ class Acceleration:
         if asked is not Kind.AUTOMATIC:
             return asked
         return Kind.BVH if self._context.is_software else Kind.DEEP_CUBEMAP
+
+    def settled(self, scene: Scene) -> Scene:
+        """The scene, with two levels asked for where its settings leave that to RPPM and the device does not hold the
+        triangles of all instances. So what follows from the settings alone agrees, as the route to the camera's first
+        hits does."""
+        settings = scene.settings
+        if settings.instancing is not Instancing.AUTOMATIC:
+            return scene
+        if fits_expanded(scene, most_expanded_triangles(self._context)):
+            return scene
+        return dataclasses.replace(scene, settings=dataclasses.replace(settings, instancing=Instancing.TWO_LEVELS))
 
     def instanced_members(self, scene: Scene, columns: InstanceColumns) -> np.ndarray | None:
         """(instances,) bool, the instances of a scene that are not expanded to world triangles; None for none. A scene

@@ -29,13 +29,15 @@ class Changes:
     """Light objects, their images, or the camera if their nodes ask for it."""
     cubemap: bool
     """Where the deep cubemap is asked to be, and how fine."""
+    levels: bool
+    """Settings, and what is baked, by which instances are expanded (instancing.py)."""
 
 
 def changes_between(before: Scene | None, after: Scene) -> Changes:
     """Members are compared by identity, the settings by value; all has changed where before is None, or where the
     working space is another."""
     if before is None or before.working_space != after.working_space:
-        return Changes(True, True, True, True, True, True)
+        return Changes(True, True, True, True, True, True, True)
     images = not same_members(before.images, after.images)
     camera = before.camera is not after.camera
     world = images or before.world is not after.world or (camera and _asks_for_camera([after.world.graph]))
@@ -60,6 +62,7 @@ def changes_between(before: Scene | None, after: Scene) -> Changes:
         light_objects=light_objects,
         cubemap=after.settings.cubemap_resolution != before.settings.cubemap_resolution
         or not np.array_equal(_point(before), _point(after), equal_nan=True),
+        levels=_levels(before) != _levels(after),
     )
 
 
@@ -71,6 +74,15 @@ def snapshot(scene: Scene) -> Scene:
 
 def _point(scene: Scene) -> np.ndarray:
     return np.full(3, np.nan) if scene.cubemap_center is None else np.asarray(scene.cubemap_center)
+
+
+def _levels(scene: Scene) -> tuple[object, ...]:
+    settings, texels = scene.settings, scene.camera.texels
+    return (
+        settings.instancing,
+        settings.first_camera_hits,
+        None if texels is None else texels.instance,
+    )
 
 
 def _asks_for_camera(graphs: list[NodeGraph | None]) -> bool:

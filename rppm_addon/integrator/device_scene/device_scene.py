@@ -138,7 +138,8 @@ class DeviceScene:
         self.materials.build(scene)
         scene = self.displacement.displaced(scene, self.materials, True)
         self._take(scene)
-        self.geometry.build(scene, self.materials.default_material)
+        instanced = functools.partial(self.acceleration.instanced_members, scene)
+        self.geometry.build(scene, self.materials.default_material, instanced=instanced)
         self.acceleration.build(scene, self.geometry, AccelerationStructure.DEEP_CUBEMAP)
 
     def move_to(self, iteration: Iteration) -> None:
@@ -176,13 +177,16 @@ class DeviceScene:
         scene = require(self.scene)
         if changes.geometry or changes.materials:
             changes.geometry |= self.materials.place_media(scene)
+        instanced = functools.partial(self.acceleration.instanced_members, self._motion.scene)
+        if not changes.geometry and (changes.materials or changes.levels):
+            changes.geometry = not self.geometry.would_place(scene, instanced)
         if changes.geometry:
             self.geometry.build(
                 scene,
                 self.materials.default_material,
                 self._motion.swept,
                 self.materials.media.places.slots,
-                functools.partial(self.acceleration.instanced_members, self._motion.scene),
+                instanced,
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):

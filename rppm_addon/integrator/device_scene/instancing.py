@@ -3,14 +3,15 @@
 
 import numpy as np
 
+from ...gl.context.context import Context
 from ...materials.traits.emitted import emits_alike, glowing_materials
-from ...materials.traits.node_rays import traces_rays
-from ...scene.meshes import Instance
-from ...scene.passes import DEEP_CUBEMAP, VECTOR
+from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
-from ...scene.settings import AccelerationStructure, FirstCameraHits, Instancing
+from ...scene.settings import FirstCameraHits, Instancing
 from ...scene.storage.sharing import changed_members
-from ..common.instance_columns import InstanceColumns
+from ..common.instance_columns import InstanceColumns, column
+from ..common.records.triangles import TRIANGLE_VERTICES
+from ..lights.emitters.candidates import STEPS
 
 MANY_TRIANGLES = 1 << 18
 """Triangles of an expanded scene from which on AUTOMATIC instancing may have two levels: building a hierarchy of fewer
@@ -18,26 +19,39 @@ takes less time than compiling the programs that trace two."""
 _FRACTION_LEFT = 0.1
 """Fraction of an expanded scene's triangles that AUTOMATIC instancing leaves at most, unless things move."""
 
+_EXPANDED_BYTES = 306
+"""Bytes of an expanded triangle with all that is made of it (docs/benchmarks/instances.md)."""
+_FRACTION_OF_MEMORY = 0.75
+"""Fraction of a device's memory that expanded triangles take at most under AUTOMATIC."""
+
 
 class MovedInstances:
-    """Instances that have moved from scene to scene, or move while the shutter is open."""
+    """Instances that have moved or bent from scene to scene, or do so while the shutter is open."""
 
     def __init__(self) -> None:
         self._instances: list[Instance] = []
+        self._meshes: list[Mesh] = []
         self._have_moved = np.zeros(0, bool)
-        """(instances,) those that have moved from scene to scene."""
+        """(instances,) those that have moved or bent from scene to scene."""
 
     def follow(self, scene: Scene) -> np.ndarray:
-        """Take a scene; returns (instances,) bool, those that moved, as far as the scenes had the same instances."""
+        """Take a scene; returns (instances,) bool, those that moved or bend, as far as the scenes had the same
+        instances."""
         before, self._instances = self._instances, list(scene.instances)
+        meshes, self._meshes = self._meshes, list(scene.meshes)
         if len(before) != len(scene.instances):
             self._have_moved = np.zeros(len(scene.instances), bool)
         else:
             rows = changed_members(before, scene.instances).tolist()
             self._have_moved[[row for row in rows if _has_moved(before[row], scene.instances[row])]] = True
+            if len(meshes) == len(scene.meshes):
+                rows = changed_members(meshes, scene.meshes).tolist()
+                bent = [row for row in rows if _has_bent(meshes[row], scene.meshes[row])]
+                self._have_moved |= _instances_of(bent, scene)
         result = self._have_moved.copy()
         if scene.shutter is not None:
             result[[movement.member for movement in scene.shutter.instances]] = True
+            result |= _instances_of([deformation.mesh for deformation in scene.shutter.meshes], scene)
         return result
 
 
@@ -45,16 +59,49 @@ def _has_moved(old: Instance, new: Instance) -> bool:
     return old.mesh == new.mesh and old.matrix.tobytes() != new.matrix.tobytes()
 
 
+def _has_bent(old: Mesh, new: Mesh) -> bool:
+    return old.positions is not new.positions and not np.array_equal(old.positions, new.positions)
+
+
+def _instances_of(meshes: list[int], scene: Scene) -> np.ndarray:
+    """(instances,) bool, those of meshes by number."""
+    if not meshes:
+        return np.zeros(len(scene.instances), bool)
+    return np.isin(column(scene.instances, "mesh", np.int64), meshes)
+
+
+def most_expanded_triangles(context: Context) -> int:
+    """Number of expanded triangles that a device holds: in one buffer, and in its memory where that is known."""
+    in_buffer = context.array_limit(16) // TRIANGLE_VERTICES.size
+    memory = context.memory
+    return in_buffer if memory is None else min(in_buffer, int(_FRACTION_OF_MEMORY * memory) // _EXPANDED_BYTES)
+
+
+def fits_expanded(scene: Scene, most_triangles: int) -> bool:
+    """Return True where all instances of a scene have no more than so many triangles, and no more of these may emit
+    light than can be chosen from."""
+    lengths = np.array([mesh.triangle_count for mesh in scene.meshes], np.int64)
+    few = min(most_triangles, STEPS)
+    if len(scene.instances) * int(lengths.max(initial=0)) <= few:  # without a look at a million instances
+        return True
+    counts = lengths[column(scene.instances, "mesh", np.int64)]
+    if counts.sum() <= few or counts.sum() > most_triangles:
+        return bool(counts.sum() <= most_triangles)
+    glowing = glowing_materials(scene.materials)
+    glows = np.array([not glowing.isdisjoint(instance.materials) for instance in scene.instances], bool)
+    return bool(counts[glows].sum() <= STEPS)
+
+
 def instanced_members(
     scene: Scene, columns: InstanceColumns, moved: np.ndarray, is_software: bool
 ) -> np.ndarray | None:
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
-    These are instances of meshes that occur more than once, or that move, and that keep their shape while the shutter
-    is open; their materials fill the inside with no medium. Those that emit light are such of meshes that occur more
-    than once, with materials that emit the same from all, without Light Linking, in scenes without media and shadow
-    catchers. columns: of the scene's instances, at any moment; moved: MovedInstances.follow. is_software: whether the
-    processor stands in for a GPU.
+    These are instances of meshes that occur more than once, or that move or bend, but for one that is baked; their
+    materials fill the inside with no medium. Those that emit light are such of meshes that occur more than once, and
+    keep their shape while the shutter is open, with materials that emit the same from all, without Light Linking, in
+    scenes without media and shadow catchers. columns: of the scene's instances, at any moment; moved:
+    MovedInstances.follow. is_software: whether the processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
     if wanted is Instancing.EXPANDED or not _may_have_two_levels(scene, is_software):
@@ -82,9 +129,11 @@ def _may_be_instanced(scene: Scene, columns: InstanceColumns, glowing: set[int])
     """(instances,) bool. glowing: the materials that emit light."""
     excluded = {number for number in glowing if not emits_alike(scene.materials[number].graph)}
     excluded |= {number for number, material in enumerate(scene.materials) if material.interior is not None}
-    bending = {deformation.mesh for deformation in scene.shutter.meshes} if scene.shutter is not None else set()
-    whole = np.array([index not in bending and mesh.volume is None for index, mesh in enumerate(scene.meshes)])
-    return whole[columns.meshes] & ~columns.have(excluded)
+    whole = np.array([mesh.volume is None for mesh in scene.meshes], bool)
+    result = whole[columns.meshes] & ~columns.have(excluded)
+    if scene.camera.texels is not None:  # which know the triangles of what is baked by number
+        result[scene.camera.texels.instance] = False
+    return result
 
 
 def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
@@ -92,17 +141,7 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     settings = scene.settings
     is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
-    kind = settings.acceleration_structure
-    has_cubemap = kind is AccelerationStructure.DEEP_CUBEMAP or (
-        kind is AccelerationStructure.AUTOMATIC and not is_software
-    )
-    return (
-        not (has_cubemap and _has_media(scene))  # programs of both would need more storage blocks than devices have
-        and settings.first_camera_hits in first_hits
-        and scene.camera.texels is None
-        and not {VECTOR, DEEP_CUBEMAP.name} & set(settings.passes)
-        and not any(traces_rays(material.graph) for material in scene.materials)
-    )
+    return settings.first_camera_hits in first_hits
 
 
 def _has_media(scene: Scene) -> bool:
@@ -114,4 +153,5 @@ def _may_share_emitters(scene: Scene, columns: InstanceColumns) -> np.ndarray:
     those of shadow catchers, know world triangles alone."""
     if _has_media(scene) or columns.catch_shadows.any():
         return np.zeros(len(scene.instances), bool)
-    return ~columns.are_linked
+    bending = [deformation.mesh for deformation in scene.shutter.meshes] if scene.shutter is not None else []
+    return ~columns.are_linked & ~np.isin(columns.meshes, bending)

@@ -6,7 +6,7 @@ import dataclasses
 import moderngl
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, ComputeShader, StorageBuffer
+from ...gl.buffer_sets import BufferSet, ComputeShader, Part
 from ...gl.buffers.records import Record
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
@@ -18,11 +18,10 @@ from ..camera_paths.importons import Importons
 from ..common.band import Band
 from ..common.film_buffers import FilmBuffer
 from ..common.iteration import Iteration
-from ..common.records.triangles import TRIANGLE_VERTICES
 from ..common.stage_sizes import StageSizes
 from ..device_scene.stage_context import StageContext
-from ..surfaces.geometry import Geometry
 from ..surfaces.placements import Placements
+from .neighbor_placements import NeighborPlacements
 
 _CAMERAS = ("", "_before", "_after")
 Record(
@@ -35,20 +34,17 @@ Record(
 
 
 class MotionVectors(BufferSet):
-    """Means over the iterations that found a surface, 16 bytes a pixel, and the world's triangles of the frames before
-    and after, 48 bytes each. Without Scene.neighbors all vectors are 0."""
+    """Means over the iterations that found a surface, 16 bytes a pixel. Without Scene.neighbors all vectors are 0."""
 
     remedy = "switch off the pass Vector"
     _vectors = FilmBuffer("motion vectors", "vec4")
-    _before = StorageBuffer("triangles of the frame before", TRIANGLE_VERTICES, texel_bytes=16, block="TrianglesBefore")
-    _after = StorageBuffer("triangles of the next frame", TRIANGLE_VERTICES, texel_bytes=16, block="TrianglesAfter")
+    _neighbors = Part(NeighborPlacements)
     _program = ComputeShader("film/motion_vectors/add.comp")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
-        self._context, self._library = context, library
         self._uploaded: tuple[Shutter, Placements] | None = None
-        """Shutter and placements of the scene whose triangles are uploaded, or None."""
+        """Shutter and placements of the scene whose neighboring frames are uploaded, or None."""
         self._cameras: tuple[Camera, Camera] | None = None
         """Cameras of the previous frame and of the next one, or None."""
 
@@ -82,6 +78,7 @@ class MotionVectors(BufferSet):
             {
                 **context.blocks,
                 **importons.blocks,
+                **context.geometry.mesh_blocks,
                 **self.blocks,
                 "PassCounts": pass_counts,
                 "MotionVectors": self._vectors.of(band),
@@ -95,8 +92,8 @@ class MotionVectors(BufferSet):
         )
 
     def _follow(self, context: StageContext) -> None:
-        """Gather the triangles of the neighboring frames, unless they are there; no cameras are known where nothing is
-        known of these."""
+        """Place what moves in the neighboring frames, unless it is there; no cameras are known where nothing is known
+        of these."""
         placements, neighbors = context.geometry.placements, context.scene.neighbors
         if (
             neighbors is not None
@@ -109,22 +106,9 @@ class MotionVectors(BufferSet):
         if neighbors is None:
             return
         moving = MovingScene(dataclasses.replace(context.scene, shutter=neighbors))
-        scenes = moving.at(0.0), moving.at(1.0)
-        geometry = Geometry(self._context, self._library)
-        try:
-            for scene, triangles in zip(scenes, (self._before, self._after), strict=True):
-                geometry.build(scene, context.materials.default_material)
-                if geometry.triangle_count != context.geometry.triangle_count:
-                    context.scene.warn(
-                        "the pass Vector is left out: meshes have no extent in the frame before or after"
-                    )
-                    return
-                size = geometry.triangles.size
-                triangles.require(size)
-                self._context.moderngl.copy_buffer(triangles.buffer, geometry.triangles.buffer, size)
-        finally:
-            geometry.release()
-        self._cameras = scenes[0].camera, scenes[1].camera
+        before, after = moving.at(0.0), moving.at(1.0)
+        self._neighbors.take(context.geometry, neighbors, (before, after))
+        self._cameras = before.camera, after.camera
         self._uploaded = neighbors, placements
 
     def read(self) -> dict[str, np.ndarray]:

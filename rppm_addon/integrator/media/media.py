@@ -104,7 +104,7 @@ class Media(Stage):
         active.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
 
     def _compile(self, kernel: str, context: StageContext) -> ComputeProgram:
-        return self._library.compute(kernel, context.acceleration.traversal_defines | self._defines)
+        return self._library.compute(kernel, context.acceleration.lean_traversal_defines | self._defines)
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))

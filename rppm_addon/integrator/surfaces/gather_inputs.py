@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Inputs of gathering triangles: instances, their slots, and the arrays of all meshes one behind the other."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
+from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.meshes import Mesh
@@ -24,6 +28,21 @@ INSTANCE_ENTRY = Record(
     slot_count="uint",
     set_code="float",
 )
+StorageBlock("Instances", "InstanceEntry instances[];")
+StorageBlock("CornerNormals", "float corner_normals[];")
+StorageBlock("CornerVertices", "uint corner_vertices[];")
+StorageBlock("TriangleCorners", "uint triangle_corners[];")
+"""Vertices of corners and corners of triangles, each counted from where those of the mesh begin."""
+_STARTS = {
+    "mesh_triangle": "triangle_corners",
+    "mesh_corner": "corner_vertices",
+    "mesh_vertex": "positions",
+    "mesh_uv": "corner_uv",
+}
+"""Members of InstanceEntry that are where a mesh's part of such an array begins."""
+_NO_UV = 0xFFFFFFFF
+"""In place of where a mesh's UV begin."""
+Constants("MeshArrays", NO_UV=_NO_UV)
 
 _DTYPES = {
     "positions": np.dtype(np.float32),
@@ -73,6 +92,39 @@ class GatherInputs(BufferSet):
             self._arrays[member] = arrays
 
 
+def array_starts(meshes: list[Mesh]) -> dict[str, np.ndarray]:
+    """(meshes,) int64 places where the arrays of each mesh begin, by the member of INSTANCE_ENTRY that says so."""
+    return {
+        field: part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1]
+        for field, member in _STARTS.items()
+    }
+
+
+def locate(entries: np.ndarray, meshes: list[Mesh], which: np.ndarray) -> None:
+    """Fill in where the arrays of the mesh of each entry begin; which: (n,), the places of these among the meshes."""
+    for field, starts in array_starts(meshes).items():
+        entries[field] = starts[which]
+    entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
+
+
+def place_slots(
+    entries: np.ndarray, numbers: np.ndarray, lists: Sequence[Sequence[int]], known: range, default_material: int
+) -> np.ndarray:
+    """Fill in the slots of entries; returns the materials of all slots, uint32, the same for instances alike.
+
+    numbers: (n,) of the list of materials that the slots of each have, among ``lists``; those that are not among the
+    ``known`` are the default material.
+    """
+    slots: list[int] = []
+    ranges = np.zeros((len(lists), 2), np.uint32)
+    for number in np.flatnonzero(np.bincount(numbers, minlength=len(lists))).tolist():
+        key = lists[number]
+        ranges[number] = len(slots), max(1, len(key))
+        slots += [m if m in known else default_material for m in key] or [default_material]
+    entries["first_slot"], entries["slot_count"] = ranges[:, 0][numbers], ranges[:, 1][numbers]
+    return np.array(slots, np.uint32)
+
+
 def part_starts(lengths: list[int]) -> np.ndarray:
     """(n + 1,) int64 places where parts of these lengths begin one behind the other, and their end."""
     return np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
@@ -95,3 +147,7 @@ def _runs(indices: list[int]) -> list[list[int]]:
         else:
             runs.append([index])
     return runs
+
+
+def _length(array: np.ndarray | None) -> int:
+    return 0 if array is None else len(array)

@@ -25,7 +25,7 @@ from ..common.instance_columns import InstanceColumns, numbered
 from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
-from .gather_inputs import INSTANCE_ENTRY, GatherInputs, part_starts
+from .gather_inputs import INSTANCE_ENTRY, GatherInputs, locate, place_slots
 from .hit_triangles import HitTriangles
 from .object_triangles import ObjectTriangles
 from .placements import PlacedArrays, PlacedMeshes, Placement, Placements
@@ -35,9 +35,6 @@ log = logging.getLogger(__name__)
 
 _OBJECTS_NAMED = 3
 """Number of objects that an error names where the device cannot hold all: those of the most triangles."""
-_NO_UV = 0xFFFFFFFF
-"""In place of where a mesh's UV begin."""
-Constants("MeshArrays", NO_UV=_NO_UV)
 _ONE_SIDED = 1 << 12
 """In the codes of triangles, above the sets: rays meet it from outside only."""
 Constants("TriangleCodes", ONE_SIDED=_ONE_SIDED)
@@ -45,13 +42,6 @@ Constants("TriangleCodes", ONE_SIDED=_ONE_SIDED)
 Record("GatherParameters", fallback_point="vec3", first_triangle="uint", triangle_count="uint", instance_count="uint")
 
 
-_STARTS = {
-    "mesh_triangle": "triangle_corners",
-    "mesh_corner": "corner_vertices",
-    "mesh_vertex": "positions",
-    "mesh_uv": "corner_uv",
-}
-"""Members of InstanceEntry that are where a mesh's part of such an array begins."""
 _MOST_MATERIALS = 1 << 31
 """Numbers of materials where slots are given, all of which are known."""
 _BLOCK = 256
@@ -134,6 +124,16 @@ class Geometry(BufferSet):
         return 0.5 * (self.bounds_low + self.bounds_high)
 
     @property
+    def placed_meshes(self) -> PlacedMeshes:
+        """Meshes and instances of the placements, once they were built."""
+        return require(self._placed_of)
+
+    @property
+    def mesh_blocks(self) -> Mapping[str, Bindable]:
+        """Storage blocks of the arrays of all meshes and of the instances, which triangles are gathered from."""
+        return self._inputs.blocks
+
+    @property
     def expanded(self) -> Sequence[Placement]:
         """Placements of the instances that are expanded to world triangles."""
         if self.instanced is None:
@@ -171,9 +171,8 @@ class Geometry(BufferSet):
         of = self._place(scene)
         meshes, chosen, which = of.meshes, of.chosen, of.which
         is_expanded = np.ones(len(chosen), bool)
-        is_instanced = instanced(self.columns) if instanced is not None else None
-        if is_instanced is not None:  # rays go on in object space, which flat ones do not have
-            is_expanded = ~(is_instanced[chosen] & (self.placed.determinants != 0.0))
+        if instanced is not None:
+            is_expanded[self._placed_by_rays(instanced)] = False
         lengths = np.array([mesh.triangle_count for mesh in meshes], np.int64)[which] * is_expanded
         ends = np.cumsum(lengths)
         self.triangle_count = int(ends[-1]) if len(ends) else 0
@@ -198,6 +197,26 @@ class Geometry(BufferSet):
             self._gather_triangles(len(of.instances))
         self._objects.gather(self._inputs.blocks, self.triangles, is_new)
         self._world = world
+
+    def would_place(self, scene: Scene, instanced: Callable[[InstanceColumns], np.ndarray | None]) -> bool:
+        """Return True where a build of a scene with the instances of the last one, whose materials or settings may be
+        others, would expand the same ones, and the same of the others might emit light. ``instanced``: as build takes
+        it."""
+        placements = self._placed_by_rays(instanced)
+        if self.instanced is None:
+            return not len(placements)
+        emitters = self._emitters_among(placements, scene)
+        return np.array_equal(placements, self.instanced.placements) and np.array_equal(
+            emitters, self.instanced.emitters
+        )
+
+    def _placed_by_rays(self, instanced: Callable[[InstanceColumns], np.ndarray | None]) -> np.ndarray:
+        """(k,) int64, ascending, the placements that are not expanded: rays go on in object space, which flat ones do
+        not have."""
+        wanted = instanced(self.columns)
+        if wanted is None:
+            return np.zeros(0, np.int64)
+        return np.flatnonzero(wanted[self.placed_meshes.chosen] & (self.placed.determinants != 0.0))
 
     def _place(self, scene: Scene) -> PlacedMeshes:
         """Take the instances of a scene that have triangles, and place them; returns what these are."""
@@ -237,7 +256,7 @@ class Geometry(BufferSet):
         self.has_round_shapes = bool(is_round.any())
         if not len(entries):
             return entries, np.array([default_material], np.uint32)
-        _locate(entries, of.meshes, of.which)
+        locate(entries, of.meshes, of.which)
         entries["pivot"] = self.placed.pivots
         for row in range(3):
             entries[f"row{row}"] = self.placed.rows[:, row]
@@ -249,7 +268,7 @@ class Geometry(BufferSet):
             numbers = numbered([slots[index] for index in of.chosen.tolist()], known)
             lists = list(known)
         materials = range(len(scene.materials)) if slots is None else range(_MOST_MATERIALS)
-        return entries, _place_slots(entries, numbers, lists, materials, default_material)
+        return entries, place_slots(entries, numbers, lists, materials, default_material)
 
     def _gather_triangles(self, instance_count: int) -> None:
         """Gather the triangles of all that is expanded."""
@@ -393,13 +412,6 @@ def objects_of_most(instances: Iterable[Instance], lengths: Iterable[int]) -> st
     return ", ".join(f'{count:,} of "{name}"' for name, count in sums.most_common(_OBJECTS_NAMED) if count)
 
 
-def _locate(entries: np.ndarray, meshes: list[Mesh], which: np.ndarray) -> None:
-    """Fill in where the arrays of the mesh of each entry begin; which: (n,), the places of these among the meshes."""
-    for field, member in _STARTS.items():
-        entries[field] = part_starts([_length(getattr(mesh, member)) for mesh in meshes])[:-1][which]
-    entries["mesh_uv"][np.array([mesh.corner_uv is None for mesh in meshes])[which]] = _NO_UV
-
-
 def _set_codes(visibility: np.ndarray, sets: np.ndarray, is_round: np.ndarray) -> np.ndarray:
     """(n,) codes of shaders/common/light_sets.glsl. visibility: (n,) RayVisibility; sets: (n,) InstanceColumns.sets;
     is_round: (n,) bool, of which instances triangles stand for strands or points."""
@@ -408,29 +420,7 @@ def _set_codes(visibility: np.ndarray, sets: np.ndarray, is_round: np.ndarray) -
     return np.where(shadowless, 1 + codes, -codes)
 
 
-def _place_slots(
-    entries: np.ndarray, numbers: np.ndarray, lists: Sequence[Sequence[int]], known: range, default_material: int
-) -> np.ndarray:
-    """Fill in the slots of entries; returns the materials of all slots, uint32, the same for instances alike.
-
-    numbers: (n,) of the list of materials that the slots of each have, among ``lists``; those that are not among the
-    ``known`` are the default material.
-    """
-    slots: list[int] = []
-    ranges = np.zeros((len(lists), 2), np.uint32)
-    for number in np.flatnonzero(np.bincount(numbers, minlength=len(lists))).tolist():
-        key = lists[number]
-        ranges[number] = len(slots), max(1, len(key))
-        slots += [m if m in known else default_material for m in key] or [default_material]
-    entries["first_slot"], entries["slot_count"] = ranges[:, 0][numbers], ranges[:, 1][numbers]
-    return np.array(slots, np.uint32)
-
-
 def _as_slice(indices: np.ndarray) -> np.ndarray | slice:
     """Ascending indices, at least one, as a slice where they follow each other, which copies nothing."""
     first, end = int(indices[0]), int(indices[-1]) + 1
     return slice(first, end) if end - first == len(indices) else indices
-
-
-def _length(array: np.ndarray | None) -> int:
-    return 0 if array is None else len(array)

@@ -39,8 +39,9 @@ NODE_RAY = Record("NodeRay", direction="vec3", query="uint", found="vec3", reach
 """A node's query: the unit vector around which rays go and how far they reach, meters; and what they found so far:
 how many met nothing, or the weighted sum of normals. ``query`` is 0 where nothing is asked. A Raycast's record finds a
 normal, and a second record follows it. First the ``direction`` of the second is where the ray begins; then it holds two
-barycentric coordinates of the hit and the lower 16 bits of the triangle, ``reach`` the others, and ``found`` the
-distance, meters, whether anything was met, and whether the object itself."""
+barycentric coordinates of the hit and the lower 24 bits of the mesh's triangle. ``reach`` holds the other 8, and above
+them the lower 16 bits of the instance; ``found`` the distance, meters, 0 where nothing was met, else 1 plus the other
+bits of the instance, and whether the object itself was met. So all are whole numbers that floats have exactly."""
 StorageBlock("NodeRays", "NodeRay node_rays[];")
 
 
@@ -91,6 +92,8 @@ class NodeRays(BufferSet):
         asking for it and its first run. casts: also rays that begin anywhere, of which the program without knows
         nothing."""
         defines = {**traversal.traversal_defines, **({"RAYCASTS": 1} if casts else {})}
+        if traversal.has_instances:
+            defines["NODE_HITS"] = "surfaces/node_rays/two_levels"
         return self._library.compute("surfaces/node_rays/trace.comp", defines)
 
     def trace(
@@ -105,7 +108,8 @@ class NodeRays(BufferSet):
         """Answer what the nodes of a program ask at a level.
 
         program: ``program``'s; order: HitOrder; arguments: its byte where the groups of the dispatch are; buffers:
-        NodeRays, Rays, Hits, Attributes and those of the traversal among others; counts: of the program that asks;
+        NodeRays, Rays, Hits, Attributes, those of the traversal and the arrays of meshes among others; counts: of the
+        program that asks;
         parameters: the others of NodeRaysParameters.
         """
         of_all = {**parameters, "ray_places": counts.places, "samples": counts.samples}

@@ -151,6 +151,7 @@ class Resolve(BufferSet):
         self._surface_attributes.build(scene, geometry, materials.attribute_names)
         self._buffers = {
             **geometry.blocks,
+            **geometry.mesh_blocks,
             **self._surface_attributes.blocks,
             **materials.blocks,
         }

@@ -151,7 +151,8 @@ class AccelerationSettings(SettingGroup):
         choices={
             Instancing.AUTOMATIC: (
                 "Automatic",
-                "Two levels where the instances of a few meshes have millions of triangles, otherwise expanded",
+                "Two levels where the instances of a few meshes have millions of triangles, or more than the device "
+                "holds, otherwise expanded",
             ),
             Instancing.EXPANDED: ("Expanded", "Each instance has triangles of its own: rays are faster"),
             Instancing.TWO_LEVELS: (

@@ -33,14 +33,14 @@ class FirstLooks:
     def of(self, mapper: ProgressivePhotonMapper) -> FirstLook:
         """Return the first look that uses a mapper's geometry. It is the same one until release() is called."""
         if self._look is None:
-            built = mapper.device_scene
+            built, acceleration = mapper.device_scene, mapper.device_scene.acceleration
             self._look = FirstLook(
                 self._context,
                 self._library,
                 built.geometry,
                 built.displacement.as_known,
                 built.centering.centered,
-                built.acceleration.instanced_members,
+                lambda scene, columns: acceleration.instanced_members(acceleration.settled(scene), columns),
             )
         return self._look
 

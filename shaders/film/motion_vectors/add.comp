@@ -6,11 +6,13 @@
 layout(local_size_x = 64) in;
 
 #include <MotionVectorParameters>
+#include <NeighborPlaces>
 #include "common/iteration.glsl"
 #include "common/active_paths.glsl"
 #include "common/bsdf/closure.glsl"
 #include "common/camera_path.glsl"
 #include "common/finite.glsl"
+#include "common/placed_point.glsl"
 #include "film/first_surface.glsl"
 uniform Parameters { MotionVectorParameters parameters; };
 readonly buffer Closures;
@@ -18,8 +20,12 @@ readonly buffer Rays;
 readonly buffer CameraPaths;
 readonly buffer Hits;
 readonly buffer Triangles;
-readonly buffer TrianglesBefore { vec4 triangles_before[]; };
-readonly buffer TrianglesAfter { vec4 triangles_after[]; };
+readonly buffer Attributes;
+readonly buffer CornerVertices;
+readonly buffer TriangleCorners;
+readonly buffer NeighborPlaces;
+readonly buffer NeighborInstances;
+readonly buffer NeighborPositions;
 readonly buffer PassCounts;
 buffer MotionVectors { vec4 motion_vectors[]; };
 readonly buffer Camera;
@@ -45,14 +51,33 @@ vec2 way(vec2 from, vec2 to) {
     return pixels;
 }
 
+// Where a triangle of its mesh is hit in a neighboring frame, all else being equal.
+vec3 neighbor_point(NeighborInstance instance, uint triangle, Hit hit) {
+    mat3 linear = transpose(mat3(instance.row0.xyz, instance.row1.xyz, instance.row2.xyz));
+    vec3 origin = vec3(instance.row0.w, instance.row1.w, instance.row2.w);
+    uint first_corner = 3u * (instance.mesh_triangle + triangle);
+    vec3 points[3];
+    for (uint k = 0u; k < 3u; ++k) {
+        uint turned = instance.mirrored != 0u && k > 0u ? 3u - k : k;
+        uint corner = instance.mesh_corner + triangle_corners[first_corner + turned];
+        uint at = 3u * (instance.mesh_vertex + corner_vertices[corner]);
+        vec3 local = vec3(neighbor_positions[at], neighbor_positions[at + 1u], neighbor_positions[at + 2u]);
+        points[k] = placed_point(linear, origin, local - instance.pivot);
+    }
+    return between(points[0], points[1], points[2], hit);
+}
+
 vec4 vector_at(Hit hit) {
     uint first = 3u * hit.triangle;
     vec3 here = between(triangle_vertices[first].xyz, triangle_vertices[first + 1u].xyz,
                         triangle_vertices[first + 2u].xyz, hit);
-    vec3 before =
-        between(triangles_before[first].xyz, triangles_before[first + 1u].xyz, triangles_before[first + 2u].xyz, hit);
-    vec3 after =
-        between(triangles_after[first].xyz, triangles_after[first + 1u].xyz, triangles_after[first + 2u].xyz, hit);
+    vec3 before = here, after = here;
+    uint neighbor = neighbor_places[attributes[hit.triangle].instance];
+    if (neighbor != RESTS) {
+        uint triangle = attributes[hit.triangle].mesh_triangle;
+        before = neighbor_point(neighbor_instances[neighbor], triangle, hit);
+        after = neighbor_point(neighbor_instances[neighbor + 1u], triangle, hit);
+    }
     vec2 center = raster_at(here, parameters.world_to_camera, parameters.window);
     vec2 place_before = raster_at(before, parameters.world_to_camera_before, parameters.window_before);
     vec2 place_after = raster_at(after, parameters.world_to_camera_after, parameters.window_after);

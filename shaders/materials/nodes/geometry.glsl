@@ -43,11 +43,15 @@ void node_object_coord(Surface surface, vec3 row0, vec3 row1, vec3 row2, vec3 of
 
 void node_uvmap(Surface surface, uint layer, out vec3 uv) { uv = vec3(attribute_value(surface, layer).xy, 0.0); }
 
+void attribute_outputs(vec4 value, uvec2 place, out vec3 color, out vec3 vector, out float fac, out float alpha) {
+    color = vector = value.rgb;
+    fac = place.y == 1u ? value.x : mean(value.rgb);
+    alpha = value.a;
+}
+
 void node_attribute(Surface surface, uint layer, out vec3 color, out vec3 vector, out float fac, out float alpha) {
     vec4 value = attribute_value(surface, layer);
-    color = vector = value.rgb;
-    fac = attribute_place(surface, layer).y == 1u ? value.x : mean(value.rgb);
-    alpha = value.a;
+    attribute_outputs(value, attribute_place(surface, layer), color, vector, fac, alpha);
 }
 
 void node_grid_attribute(Surface surface, uint layer, out vec3 color, out float fac) {

@@ -27,7 +27,7 @@ void node_raycast(Surface surface, int only_local, uint place, uint level, vec3 
             hit_position = position + hit_distance * direction;
             hit_normal = normal;
             vec3 where = node_rays[beside].direction;
-            hit_triangle = vec3(where.z, node_rays[beside].reach, 1.0);
+            hit_triangle = vec3(where.z, node_rays[beside].reach, found.y);
             hit_barycentrics = vec3(1.0 - where.x - where.y, where.xy);
         }
     }

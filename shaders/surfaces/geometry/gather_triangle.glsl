@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A triangle of an instance's mesh becomes a world-space triangle.
-#include "common/geometry.glsl"
 #include "common/placed_point.glsl"
+#include "surfaces/geometry/corner_normals.glsl"
 #include "surfaces/geometry/mesh_arrays.glsl"
 
-readonly buffer CornerNormals { float corner_normals[]; };
 readonly buffer CornerUvs { vec2 corner_uvs[]; };
 readonly buffer TriangleSlots { uint triangle_slots[]; };
 readonly buffer SlotMaterials { uint slot_materials[]; };
@@ -18,9 +17,8 @@ void gather_triangle(uint number, uint triangle, uint index, vec3 fallback_point
     uint local = instance.mesh_triangle + triangle;
     mat3 linear = transpose(mat3(instance.row0.xyz, instance.row1.xyz, instance.row2.xyz));
     vec3 origin = vec3(instance.row0.w, instance.row1.w, instance.row2.w);
-    // Cofactors carry normals whatever the scale; a mirroring matrix turns the winding round.
-    mat3 cofactors = mat3(cross(linear[1], linear[2]), cross(linear[2], linear[0]), cross(linear[0], linear[1]));
-    bool mirrored = dot(linear[0], cofactors[0]) < 0.0;
+    mat3 cofactors = cofactors_of(linear);
+    bool mirrored = is_mirroring(linear, cofactors);
 
     vec3 local_points[3], points[3];
     uint corners[3];
@@ -36,13 +34,7 @@ void gather_triangle(uint number, uint triangle, uint index, vec3 fallback_point
     uint normals[3];
     vec2 uvs[3];
     for (uint k = 0u; k < 3u; ++k) {
-        uint at = 3u * corners[k];
-        vec3 normal = cofactors * vec3(corner_normals[at], corner_normals[at + 1u], corner_normals[at + 2u]);
-        if (mirrored) normal = -normal;
-        float size = length(normal);
-        // A normal of 0, as those of flat faces are, or one that is not finite gives way to the triangle's.
-        normals[k] = size > 0.0 && size < 1e30 ? pack_unit_vector(normal / size)
-                                               : pack_unit_vector(face / max(length(face), 1e-30));
+        normals[k] = placed_normal(corners[k], cofactors, mirrored, face);
         uvs[k] =
             instance.mesh_uv == NO_UV ? vec2(0.0) : corner_uvs[instance.mesh_uv + corners[k] - instance.mesh_corner];
     }

@@ -2,10 +2,10 @@
 // The arrays of all meshes, where those of each instance begin, and the triangles that are made of them.
 #include <InstanceEntry>
 
-readonly buffer Instances { InstanceEntry instances[]; };
+readonly buffer Instances;
 readonly buffer Positions { float positions[]; };
-readonly buffer CornerVertices { uint corner_vertices[]; };
-readonly buffer TriangleCorners { uint triangle_corners[]; };
+readonly buffer CornerVertices;
+readonly buffer TriangleCorners;
 writeonly buffer Triangles;
 
 vec3 three_floats(uint index) {

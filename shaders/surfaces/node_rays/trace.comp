@@ -5,6 +5,10 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl RAYCASTS=1
 // lint: TRAVERSAL=bvh/traverse.glsl
 // lint: TRAVERSAL=bvh/traverse.glsl RAYCASTS=1
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl NODE_HITS=surfaces/node_rays/two_levels RAYCASTS=1
 // What the nodes of a program's materials ask of rays, some samples of each at a time.
 
 layout(local_size_x = 64) in;
@@ -24,6 +28,7 @@ readonly buffer HitOrder;
 
 #define TRACES_INSTANCES
 #include TRAVERSAL
+#include NODE_HITS "surfaces/node_rays/one_level/hits.glsl"
 #include <NodeRayQueries>
 #include <Ranges>
 
@@ -91,7 +96,7 @@ Ray occlusion_ray(vec3 position, vec3 offset, uint triangle, mat3 axes, float re
 
 // The front's.
 vec3 smooth_normal(Hit hit, vec3 geometric, vec3 b) {
-    vec3 normal = triangle_normal(hit.triangle, b);
+    vec3 normal = normal_of(hit, b);
     return dot(normal, normal) > 1e-12 ? normalize(normal) : geometric;
 }
 
@@ -120,12 +125,13 @@ Ray cast_ray(NodeRay asked, uint beside, uint triangle) {
 vec3 keep_cast(uint beside, Hit hit, vec3 direction, uint instance) {
     node_rays[beside].found = vec3(0.0);
     if (hit.triangle == NO_TRIANGLE) return vec3(0.0);
-    node_rays[beside].direction = vec3(hit.b1, hit.b2, float(hit.triangle & 0xffffu));
-    node_rays[beside].reach = float(hit.triangle >> 16u);
+    uint found_instance = instance_of(hit), found_triangle = mesh_triangle_of(hit);
+    node_rays[beside].direction = vec3(hit.b1, hit.b2, float(found_triangle & 0xffffffu));
+    node_rays[beside].reach = float(found_triangle >> 24u | (found_instance & 0xffffu) << 8u);
     vec3 geometric = geometric_normal(hit.triangle);
     vec3 normal = smooth_normal(hit, geometric, barycentrics(hit));
-    bool itself = attributes[hit.triangle].instance == instance;
-    node_rays[beside].found = vec3(hit.distance, 1.0, float(itself));
+    bool itself = found_instance == instance;
+    node_rays[beside].found = vec3(hit.distance, 1.0 + float(found_instance >> 16u), float(itself));
     return dot(geometric, direction) > 0.0 ? -normal : normal;
 }
 #else
@@ -170,7 +176,7 @@ void main() {
 #endif
             int most_hits = bevel ? MOST_BEVEL_HITS : 1;
             for (int hit_number = 0; hit_number < most_hits; ++hit_number) {
-                Hit hit = trace_ray(ray, any_hit);
+                Hit hit = trace_node_ray(ray, any_hit);
 #ifdef RAYCASTS
                 if (is_raycast(kind)) {
                     found = keep_cast(at + 1u, hit, ray.direction, instance);

@@ -14,7 +14,7 @@ from rppm_addon.integrator.common.records.rays import HIT, NO_TRIANGLE
 from rppm_addon.integrator.deep_cubemap.builder import CubemapBuilder
 from rppm_addon.integrator.deep_cubemap.deep_cubemap import DeepCubemap
 from rppm_addon.integrator.device_scene import acceleration
-from rppm_addon.scene import AccelerationStructure, Instance, Instancing, Mesh, Scene
+from rppm_addon.scene import AccelerationStructure, Instance, Instancing, Mesh, NodeGraph, Scene
 from rppm_addon.self_test.meshes import sphere
 from rppm_addon.self_test.ray_queries import ray_records
 
@@ -131,16 +131,29 @@ def test_variants_of_cubemaps_find_the_same_hits(mapper, other_mapper, library, 
         np.testing.assert_array_equal(found, wanted)
 
 
-def crowd_in_clear_air(size: int, **settings: object) -> Scene:
-    """The crowded room without media, with which deep cubemaps have one level."""
+def glowing_fog(scattering: float, emission: float) -> NodeGraph:
+    graph = NodeGraph()
+    graph.surface = graph.add(
+        "volume_coefficients",
+        "volume",
+        scatter_coefficients=(scattering,) * 3,
+        absorption_coefficients=(0.1,) * 3,
+        emission_coefficients=(emission,) * 3,
+    )
+    return graph
+
+
+def crowd_in_fog(size: int, **settings: object) -> Scene:
+    """The crowded room full of fog, with a ball of fog that shines, which photons begin in, and more of its other
+    balls."""
     scene = scenes.crowded_room(size, **settings)
-    scene.world.volume = None
-    for material in scene.materials:
-        material.interior = None
+    scene.world.volume = glowing_fog(0.2, 0.0)
+    scene.materials[-1].interior = glowing_fog(1.0, 2.0)
+    scene.instances += [Instance(5, scenes.placed(0.2 * k, 0.3, 0.6, 0.08), [1]) for k in range(4)]
     return scene
 
 
-@pytest.mark.parametrize("make", [scenes.room, pytest.param(crowd_in_clear_air, marks=pytest.mark.long)])
+@pytest.mark.parametrize("make", [scenes.room, pytest.param(crowd_in_fog, marks=pytest.mark.long)])
 def test_pictures_equal_those_of_expanded_instances(mapper, make):
     films = []
     for way in (Instancing.EXPANDED, Instancing.TWO_LEVELS):

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cost of rays in the deep cubemap, as pictures."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import scenes
 
-from rppm_addon.scene import Camera
+from rppm_addon.scene import Camera, Instancing
 
 
 def looking_down(meshes, orthographic=False):
@@ -45,6 +47,23 @@ def test_crowds_have_long_lists_or_fine_cells(renderer):
     plain = renderer.inspect(looking_down([SQUARE]))[1]
     assert counts["resolution"] > plain["resolution"]
     assert np.median(costs[..., 2][costs[..., 2] > 0]) < 100
+
+
+def test_instances_cost_where_they_are(renderer):
+    """Twenty balls beside the square: every hit lies in a cell that lists what it is on, triangles or instances."""
+    scene = looking_down([SQUARE, scenes.sphere("ball")])
+    places = np.random.default_rng(3).uniform((-1.8, -1.4, -0.5), (1.8, 1.4, 0.5), (20, 3))
+    scene.instances[1:] = [dataclasses.replace(scene.instances[1], matrix=scenes.placed(*at, 0.2)) for at in places]
+    found = []
+    for instancing in (Instancing.EXPANDED, Instancing.TWO_LEVELS):
+        scene.settings.instancing = instancing
+        costs, counts, _ = renderer.inspect(scene)
+        found.append((costs, counts["triangle"]))
+    (expanded, triangles), (in_levels, world_triangles) = found
+    assert (triangles, world_triangles) == (2 + 20 * 960, 2)
+    np.testing.assert_array_equal(in_levels[..., 2] > 0, expanded[..., 2] > 0)
+    steps, tests, listed, entries = np.moveaxis(in_levels, -1, 0)
+    assert (steps[listed > 0] >= 1).all() and (tests[listed > 0] >= 1).all() and (entries[listed > 0] >= 1).all()
 
 
 def test_the_pass_comes_with_the_frame_if_asked_for(renderer):

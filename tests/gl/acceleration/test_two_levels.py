@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 import scenes
 from busy_scenes import SCENES, busy
-from moving_scenes import open_for, way
+from moving_scenes import everything_moves, open_for, way
 from rendering import radiance_of
 from support.lobes import Lobe, LobeKind, material
 
-from rppm_addon.integrator.bvh import bottom_levels
+from rppm_addon.integrator.bvh import bottom_levels, bvh
+from rppm_addon.integrator.device_scene import instancing as rule
 from rppm_addon.scene import AccelerationStructure, Instance, Instancing, Scene
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.passes import VECTOR
@@ -21,9 +22,8 @@ BALL = 5
 
 
 def in_two_levels(scene: Scene, instancing: Instancing = Instancing.TWO_LEVELS) -> Scene:
-    passes = tuple(name for name in scene.settings.passes if name != VECTOR)
     settings = dataclasses.replace(
-        scene.settings, instancing=instancing, passes=passes, acceleration_structure=AccelerationStructure.BVH
+        scene.settings, instancing=instancing, acceleration_structure=AccelerationStructure.BVH
     )
     return dataclasses.replace(scene, settings=settings)
 
@@ -87,7 +87,7 @@ def test_pictures_equal_those_of_expanded_instances(mapper, name):
     expanded = radiance_of(mapper, in_two_levels(make(), Instancing.EXPANDED), 2)
     assert mapper.device_scene.geometry.instanced is None
     in_levels = radiance_of(mapper, in_two_levels(make()), 2)
-    assert (mapper.device_scene.geometry.instanced is not None) == (name != "motion")  # its ball bends
+    assert mapper.device_scene.geometry.instanced is not None
     np.testing.assert_array_equal(in_levels, expanded)
 
 
@@ -108,6 +108,36 @@ def test_moving_an_instance_builds_no_bottom_level(mapper, other_mapper, monkeyp
     mapper.iterate()
     monkeypatch.undo()
     np.testing.assert_array_equal(mapper.film.read_radiance(), radiance_of(other_mapper, changed))
+
+
+def bent(scene: Scene, member: int) -> Scene:
+    """The scene with another shape of the mesh of an instance."""
+    meshes = [*scene.meshes]
+    number = scene.instances[member].mesh
+    meshes[number] = dataclasses.replace(meshes[number], positions=meshes[number].positions * np.float32([1.0, 0.9, 1]))
+    return dataclasses.replace(scene, meshes=meshes)
+
+
+def test_what_bends_from_scene_to_scene_rebuilds_its_own(mapper, other_mapper, monkeypatch):
+    """Automatic takes it out of the world triangles when it bends, and builds these no more."""
+    monkeypatch.setattr(rule, "MANY_TRIANGLES", 1)
+    scene = in_two_levels(busy(), Instancing.AUTOMATIC)
+    mapper.build(scene)
+    assert mapper.device_scene.geometry.instanced is None
+    scene = bent(scene, BALL)
+    mapper.update(scene)
+    built = []
+    nodes = bvh.triangle_nodes
+    monkeypatch.setattr(bvh, "triangle_nodes", lambda *arguments: built.append(arguments) or nodes(*arguments))
+    scene = bent(scene, BALL)
+    mapper.update(scene)
+    assert not built
+    mapper.iterate()
+    instanced = mapper.device_scene.geometry.instanced
+    assert instanced is not None and [mesh.name for mesh in instanced.meshes] == [scene.meshes[BALL].name]
+    expected = radiance_of(other_mapper, scene)
+    assert other_mapper.device_scene.geometry.instanced is None
+    np.testing.assert_array_equal(mapper.film.read_radiance(), expected)
 
 
 def test_memory_does_not_grow_with_the_triangles_of_instances(mapper):
@@ -131,3 +161,32 @@ def test_passes_equal_those_of_expanded_instances(mapper):
     assert {"Depth", "Normal", "Position"} <= set(found[0])
     for name, values in found[0].items():
         np.testing.assert_array_equal(found[1][name], values, err_msg=name)
+
+
+def between_frames() -> Scene:
+    """A ball moves and bends from frame to frame, another bends, one that is mirrored rests, and the camera moves."""
+    scene = with_balls(scenes.placed(0.0, 0.4, 0.4, 0.3) @ np.diag([-1.0, 1.0, 1.0, 1.0]), skewed())
+    neighbors = everything_moves(scene, 0.4).shutter
+    settings = dataclasses.replace(scene.settings, passes=(VECTOR,))
+    return dataclasses.replace(scene, neighbors=neighbors, settings=settings)
+
+
+@pytest.mark.parametrize("offset", [0.0, 50000.0])
+def test_motion_vectors_equal_those_of_expanded_instances(mapper, offset):
+    """At the world's origin and far from it, where vertices are counted from a pivot."""
+    scene, far = between_frames(), scenes.placed(offset, 0.0, 0.0)
+    instances = [dataclasses.replace(item, matrix=far @ item.matrix) for item in scene.instances]
+    camera = dataclasses.replace(scene.camera, matrix=far @ scene.camera.matrix)
+    neighbors = dataclasses.replace(
+        scene.neighbors,
+        instances=[dataclasses.replace(way, matrices=far @ way.matrices) for way in scene.neighbors.instances],
+        camera=dataclasses.replace(scene.neighbors.camera, matrices=far @ scene.neighbors.camera.matrices),
+    )
+    scene = dataclasses.replace(scene, instances=instances, camera=camera, neighbors=neighbors)
+    found = []
+    for instancing in (Instancing.EXPANDED, Instancing.TWO_LEVELS):
+        radiance_of(mapper, in_two_levels(scene, instancing), 2)
+        found.append(mapper.film.read_passes()[VECTOR])
+    assert mapper.device_scene.geometry.instanced is not None
+    assert (found[0] != 0.0).any(axis=2).mean() > 0.9
+    np.testing.assert_array_equal(found[1], found[0])

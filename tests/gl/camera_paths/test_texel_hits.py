@@ -3,11 +3,13 @@
 
 import numpy as np
 import pytest
+from rendering import radiance_of
 from support.floor import floor_scene
 
 from rppm_addon.integrator.common import band
-from rppm_addon.scene import Camera, Texels
+from rppm_addon.scene import AccelerationStructure, Camera, Instance, Instancing, Texels
 from rppm_addon.scene.errors import SceneError
+from rppm_addon.self_test.meshes import placed, sphere
 
 WIDTH, HEIGHT = 12, 8
 DATA = ("Position", "Normal", "UV")
@@ -109,3 +111,27 @@ def test_an_object_without_faces_says_so(renderer):
     scene.meshes[0].triangle_slots = np.zeros(0, np.int32)
     with pytest.raises(SceneError, match='"Floor" has no faces that can be baked'):
         renderer.render(scene)
+
+
+@pytest.mark.parametrize("structure", [AccelerationStructure.BVH, AccelerationStructure.DEEP_CUBEMAP])
+def test_instances_around_what_is_baked_share_their_mesh(mapper, structure):
+    """The floor, of which there is another one, among balls that hide lights: all that is not baked is placed by
+    rays."""
+
+    def baked(instancing: Instancing) -> np.ndarray:
+        scene = baked_scene()
+        scene.meshes.append(sphere("ball", 16, 8))
+        scene.instances.append(Instance(0, placed(0.0, 0.0, 4.0), scene.instances[0].materials))
+        for place in np.random.default_rng(5).uniform((-1, -1, 0.2), (1, 1, 1), (30, 3)):
+            scene.instances.append(Instance(1, placed(*place, 0.1), scene.instances[0].materials))
+        scene.settings = scene.settings.with_values(
+            passes=(), photons=500, instancing=instancing, acceleration_structure=structure
+        )
+        return radiance_of(mapper, scene, 2)
+
+    expanded = baked(Instancing.EXPANDED)
+    in_levels = baked(Instancing.TWO_LEVELS)
+    instanced = mapper.device_scene.geometry.instanced
+    assert instanced is not None and len(instanced.which) == 30
+    assert expanded[..., :3].std() > 0.01
+    np.testing.assert_array_equal(in_levels, expanded)

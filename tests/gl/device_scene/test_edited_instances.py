@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 import scenes
 from rendering import radiance_of
+from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.bvh import leaves
 from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.integrator.surfaces.geometry import Geometry
 from rppm_addon.integrator.surfaces.surface_attributes import SHADING_INSTANCE, SurfaceAttributes
-from rppm_addon.scene import AccelerationStructure, Instance, Instancing, RayVisibility, Scene
+from rppm_addon.scene import AccelerationStructure, FirstCameraHits, Instance, Instancing, RayVisibility, Scene
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
 from rppm_addon.self_test.meshes import rectangle
@@ -22,7 +23,7 @@ COUNT = 4200
 """Leaves: from 4096 on, a top level leaves those where they are that rest."""
 
 
-def leafy() -> Scene:
+def leafy(count: int = COUNT) -> Scene:
     """A room with a heap of leaves of two kinds, each an instance."""
     two_levels = {"instancing": Instancing.TWO_LEVELS, "acceleration_structure": AccelerationStructure.BVH}
     scene = scenes.room(16, photons=500, **two_levels)
@@ -32,7 +33,7 @@ def leafy() -> Scene:
         rectangle("tile", (-2, -1, 0), (2, -1, 0), (2, 1, 0), (-2, 1, 0.5)),
     ]
     rng = np.random.default_rng(7)
-    for place in rng.uniform(-0.6, 0.6, (COUNT, 3)):
+    for place in rng.uniform(-0.6, 0.6, (count, 3)):
         matrix = scenes.placed(*place, 0.02)
         matrix[:3, :3] = matrix[:3, :3] @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
         scene.instances.append(Instance(first + int(rng.integers(2)), matrix, [0], "leaf", random=float(rng.uniform())))
@@ -117,6 +118,33 @@ def test_pictures_of_edited_scenes_equal_those_of_new_ones(mapper, other_mapper,
     for name, edit in EDITS.items():
         scene = edit(scene)
         assert_like_a_fresh_one(mapper, other_mapper, scene, name)
+
+
+def glowing_leaves(scene: Scene) -> Scene:
+    materials = list(scene.materials)
+    materials[0] = material("glowing", Lobe(LobeKind.EMISSION, color=(2.0, 1.0, 0.5)))
+    return dataclasses.replace(scene, materials=materials)
+
+
+def with_settings(**settings: object) -> Callable[[Scene], Scene]:
+    return lambda scene: dataclasses.replace(scene, settings=dataclasses.replace(scene.settings, **settings))
+
+
+def test_edits_of_materials_and_settings_decide_anew_what_is_expanded(mapper, other_mapper):
+    scene = leafy(200)
+    mapper.build(scene)
+    for edit, count, has_emitters in (
+        (glowing_leaves, 200, True),
+        (with_settings(instancing=Instancing.EXPANDED), 0, False),
+        (with_settings(instancing=Instancing.TWO_LEVELS), 200, True),
+        (with_settings(first_camera_hits=FirstCameraHits.RASTERIZED), 0, False),
+    ):
+        scene = edit(scene)
+        assert_like_a_fresh_one(mapper, other_mapper, scene, str(edit))
+        instanced = mapper.device_scene.geometry.instanced
+        assert (0 if instanced is None else len(instanced.which)) >= count
+        assert (instanced is None) == (count == 0)
+        assert (instanced is not None and instanced.has_emitters) == has_emitters
 
 
 def test_far_scenes_are_edited_as_near_ones(mapper, other_mapper):

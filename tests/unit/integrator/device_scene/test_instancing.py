@@ -10,7 +10,7 @@ from support.lobes import Lobe, LobeKind, material
 from rppm_addon.integrator.common.instance_columns import InstanceColumns
 from rppm_addon.integrator.common.stage_sizes import StageSizes
 from rppm_addon.integrator.device_scene import instancing
-from rppm_addon.integrator.device_scene.instancing import MovedInstances, instanced_members
+from rppm_addon.integrator.device_scene.instancing import MovedInstances, fits_expanded, instanced_members
 from rppm_addon.scene import (
     AccelerationStructure,
     Camera,
@@ -22,11 +22,11 @@ from rppm_addon.scene import (
     RenderSettings,
     Scene,
     Shutter,
+    Texels,
 )  # fmt: skip
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
-from rppm_addon.scene.passes import DEEP_CUBEMAP, VECTOR
 from rppm_addon.self_test.meshes import placed, rectangle, sphere
 
 PLAIN, GLOWING, FILLED = range(3)
@@ -94,6 +94,20 @@ def test_what_glows_by_object_or_place_is_expanded():
         assert members_of(glowing_by(kind, output)) == [0, 1, 2], kind
 
 
+def with_node(kind: str, output: str, **members: object) -> Scene:
+    """Balls whose color is what a node gives."""
+    scene = scene_of(*BALLS, **TWO_LEVELS)
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=graph.add(kind, output, **members))
+    scene.materials[PLAIN] = Material("plain", graph)
+    return scene
+
+
+def test_nodes_that_trace_rays_share_triangles():
+    for kind, output in (("ambient_occlusion", "color"), ("bevel", "normal"), ("raycast", "hit_normal")):
+        assert members_of(with_node(kind, output)) == [0, 1, 2], kind
+
+
 def test_what_glows_and_is_linked_is_expanded():
     scene = with_instance(scene_of(*GLOWING_BALLS, **TWO_LEVELS), 1, linking=LightLinking(light_set_membership=2))
     assert members_of(scene) == [0, 2]
@@ -105,11 +119,24 @@ def test_what_glows_beside_media_and_catchers_is_expanded():
     assert members_of(caught) == []
 
 
-def test_what_bends_is_expanded():
+def bending(scene: Scene, number: int = 0) -> Scene:
+    """The scene with a mesh that bends while the shutter is open."""
+    mesh = scene.meshes[number]
+    deformation = Deformation(number, KEYS, np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
+    return dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[deformation]))
+
+
+def test_what_bends_shares_its_triangles_unless_it_glows():
+    assert members_of(bending(scene_of(*BALLS, (1, PLAIN), **TWO_LEVELS))) == [0, 1, 2]
+    assert members_of(bending(scene_of(*GLOWING_BALLS, (0, PLAIN), (0, PLAIN), **TWO_LEVELS))) == [3, 4]
+    assert members_of(bending(scene_of(*GLOWING_BALLS, (1, PLAIN), **TWO_LEVELS), 1)) == [0, 1, 2]
+
+
+def test_what_is_baked_is_expanded():
     scene = scene_of(*BALLS, **TWO_LEVELS)
-    mesh = scene.meshes[0]
-    bending = Deformation(0, KEYS, np.stack([mesh.positions] * 2), np.stack([mesh.corner_normals] * 2))
-    assert members_of(dataclasses.replace(scene, shutter=Shutter(np.ones(4), meshes=[bending]))) == []
+    nothing = np.zeros((8, 8, 4), np.float32)
+    texels = Texels(1, np.full((8, 8), -1, np.int32), nothing[..., :2], nothing)
+    assert members_of(dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, texels=texels))) == [0, 2]
 
 
 def test_few_triangles_are_expanded_unless_asked_for(monkeypatch):
@@ -131,17 +158,9 @@ def test_an_object_that_occurs_once_and_moves():
     assert members_of(scene_of((0, GLOWING), (1, PLAIN), **TWO_LEVELS), moved=(0,)) == []
 
 
-@pytest.mark.parametrize(
-    "settings",
-    [
-        {"first_camera_hits": FirstCameraHits.RASTERIZED},
-        {"passes": ("Combined", VECTOR)},
-        {"passes": ("Combined", DEEP_CUBEMAP.name)},
-    ],
-)
-def test_what_looks_at_world_triangles_has_one_level(settings):
+def test_rasterized_first_hits_need_world_triangles():
     assert members_of(scene_of(*BALLS, **TWO_LEVELS)) != []
-    assert members_of(scene_of(*BALLS, **TWO_LEVELS, **settings)) == []
+    assert members_of(scene_of(*BALLS, **TWO_LEVELS, first_camera_hits=FirstCameraHits.RASTERIZED)) == []
 
 
 @pytest.mark.parametrize("structure", AccelerationStructure)
@@ -176,14 +195,38 @@ def test_instances_that_move_from_scene_to_scene():
     assert moved_in(first, second, scene_of(*BALLS, (1, PLAIN))) == []
 
 
+def test_instances_of_meshes_that_bend_from_scene_to_scene():
+    first = scene_of(*BALLS, (1, PLAIN))
+    wall = first.meshes[1]
+    second = dataclasses.replace(
+        first, meshes=[first.meshes[0], dataclasses.replace(wall, positions=2 * wall.positions)]
+    )
+    assert moved_in(first, second) == moved_in(first, second, second) == [3]
+    copied = dataclasses.replace(first, meshes=[first.meshes[0], dataclasses.replace(wall, positions=+wall.positions)])
+    assert moved_in(first, copied) == []
+    assert moved_in(first, dataclasses.replace(second, meshes=[*second.meshes, wall])) == []
+
+
 def test_instances_that_move_while_the_shutter_is_open():
     scene = scene_of(*BALLS)
     movement = Movement(2, KEYS, np.stack([placed(0, 0, 0), placed(0, 0, 1)]))
     assert moved_in(dataclasses.replace(scene, shutter=Shutter(np.ones(4), instances=[movement]))) == [2]
+    assert moved_in(bending(scene_of(*BALLS, (1, PLAIN)), 1)) == [3]
 
 
-def test_volumes_and_a_deep_cubemap_leave_no_blocks_for_two_levels():
+@pytest.mark.parametrize("structure", AccelerationStructure)
+def test_what_has_no_volume_shares_its_triangles_beside_volumes(structure):
     members = (0, PLAIN), (0, PLAIN), (1, FILLED)
-    assert members_of(scene_of(*members, **TWO_LEVELS)) == [0, 1]
-    cubemap = scene_of(*members, **TWO_LEVELS, acceleration_structure=AccelerationStructure.DEEP_CUBEMAP)
-    assert members_of(cubemap) == []
+    assert members_of(scene_of(*members, **TWO_LEVELS, acceleration_structure=structure)) == [0, 1]
+
+
+def test_scenes_that_fit_expanded(monkeypatch):
+    """By all triangles, of which a ball has 960, and by those that emit light."""
+    scene = scene_of(*BALLS, (0, GLOWING), (1, PLAIN))
+    assert fits_expanded(scene, 4 * 960 + 2) and not fits_expanded(scene, 4 * 960 + 1)
+    assert fits_expanded(scene_of(), 0)
+    monkeypatch.setattr(instancing, "STEPS", 960)
+    assert fits_expanded(scene, 4 * 960 + 2)
+    monkeypatch.setattr(instancing, "STEPS", 959)
+    assert not fits_expanded(scene, 4 * 960 + 2)
+    assert fits_expanded(scene_of(*BALLS, (1, GLOWING)), 4 * 960)
