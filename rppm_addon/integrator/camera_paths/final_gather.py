@@ -122,8 +122,11 @@ class FinalGather(Stage):
         self, context: StageContext, gathered: moderngl.Buffer, radiances: moderngl.Buffer, band: Band, radii: Radii
     ) -> None:
         """Add radiance that arrived along the rays (``gathered``, vec4 each), or a part of it, to the ``radiances``
-        (vec4) of the pixels that reuse the rays."""
-        radius = REUSE_RADIUS * radii.in_pixels
+        (vec4) of the pixels that reuse the rays.
+
+        Pictures that are denoised do without the neighbors' rays: what pixels have in common passes for light there.
+        """
+        radius = 0.0 if context.settings.use_denoising else REUSE_RADIUS * radii.in_pixels
         self._reuse_program.run(
             band.pixel_count,
             {**context.blocks, **self.blocks, "GatherRadiances": gathered, "Radiances": radiances},

@@ -54,6 +54,16 @@ def test_reuse_keeps_the_mean_and_takes_noise_away(mapper, monkeypatch):
     assert abs(by_block.mean()) < 4 * by_block.mean(axis=(1, 2)).std(ddof=1) / np.sqrt(SEEDS) + 0.005 * level
 
 
+def test_pictures_that_are_denoised_reuse_no_rays(mapper, monkeypatch):
+    settings = {"photons": 2048, "radius_scale": 60.0, "filter_width": 0.0}
+    shared = radiance_of(mapper, diffuse_room(**settings), 2)
+    to_denoise = radiance_of(mapper, diffuse_room(**settings, use_denoising=True), 2)
+    monkeypatch.setattr(final_gather, "REUSE_RADIUS", 0.0)
+    alone = radiance_of(mapper, diffuse_room(**settings), 2)
+    np.testing.assert_array_equal(to_denoise, alone)
+    assert (shared != alone).any()
+
+
 def test_rays_of_diffuse_surfaces_are_reused_and_those_of_rough_ones_are_not(mapper):
     scene = scenes.room(SIZE, photons=64)
     scene.materials.append(material("rough", Lobe(LobeKind.GLOSSY, color=(0.8, 0.8, 0.8), roughness=0.8)))
