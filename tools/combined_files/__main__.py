@@ -8,7 +8,17 @@ from pathlib import Path
 
 import bpy
 
-from . import characters, corridors, landscapes, motion, products, rooms, shaders  # noqa: F401 (they list their kinds)
+from . import (  # noqa: F401 (they list their kinds)
+    characters,
+    corridors,
+    crowds,
+    landscapes,
+    motion,
+    products,
+    rooms,
+    shaders,
+    still_lifes,
+)
 from .draws import Draws
 from .scenes import KINDS, begin
 

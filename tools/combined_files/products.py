@@ -48,7 +48,7 @@ def product(draws: Draws) -> None:
         backdrop(materials.plain(draws) if draws.maybe(0.6) else materials.procedural(draws))
     else:
         add("Table", shape("grid", materials.lacquer(draws)), scale=(12, 12, 1))
-    for at in range(draws.randint(4, 9)):
+    for at in range(draws.randint(12, 24)):
         angle, away = 2.4 * at, 0.28 * math.sqrt(at)
         x, y = away * math.cos(angle), away * math.sin(angle)
         tall = draws.between(0.2, 0.6)

@@ -21,7 +21,7 @@ def _exported(kind: str, seed: int) -> Scene:
 def test_files_have_all_that_a_render_needs(registered, kind):
     scene = _exported(kind, 3)
     assert scene.camera.resolution == SIZE
-    assert len(scene.instances) >= 10
+    assert len(scene.instances) >= 12
     assert scene.lights
 
 
