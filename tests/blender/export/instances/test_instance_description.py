@@ -100,6 +100,13 @@ def test_each_of_two_instancers_of_one_mesh_passes_on_its_own(scene):
         assert instance.color == pytest.approx((0.1 * number, 0.0, 1.0, 1.0)) and instance.materials == [0]
 
 
+def test_instances_on_vertices_have_the_color_of_their_instancer(scene):
+    host, leaf = add_mesh(scene, "Host"), add_mesh(scene, "Leaf", color=(0.5, 0.25, 0.125, 1.0))
+    leaf.parent, host.instance_type, host.color = host, "VERTS", (0.0, 1.0, 0.0, 1.0)
+    colors = {instance.color for instance in export(scene).instances[1:5]}
+    assert colors == {(0.0, 1.0, 0.0, 1.0)}
+
+
 def test_placements_leave_out_what_has_no_extent_and_forget_single_objects_that_are_multiplied():
     placements, report = Placements(identify=True), Report()
     flat, good, multiple = (Instance(0, np.eye(4), object_name=name) for name in ("Flat", "Good", "Multiple"))
