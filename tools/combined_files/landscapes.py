@@ -114,7 +114,7 @@ def landscape(draws: Draws) -> None:
         haze.inputs["Anisotropy"].default_value = draws.pick((0.0, 0.4))
         tree.links.new(haze.outputs[0], output.inputs["Volume"])
     lamp("SUN", (0, 0, 9), draws.between(1.0, 4.0), (draws.between(-4, 4), 4, 3), angle=draws.between(0.005, 0.1))
-    camera((draws.between(-2, 2), -8.5, draws.between(2.5, 4.5)), (0, 2, 0.8), draws.between(28, 45))
+    camera((draws.between(-2, 2), -8.5, draws.between(3.6, 5.0)), (0, 2, 0.8), draws.between(28, 45))
 
 
 def _painted(draws: Draws, mesh: bpy.types.Mesh) -> bpy.types.Mesh:
