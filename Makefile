@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 .DEFAULT_GOAL := help
-.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock format lint docs docs-tools docs-version docs-images pairs survey references parity bench bench-tools bench-export bench-peers drivers clean
+.PHONY: help setup render sample extension test test-unit test-long test-touched fuzz coverage test-gui test-wheels soak lock format lint docs docs-tools docs-version docs-images pairs survey combined references parity bench bench-tools bench-export bench-peers drivers clean
 # Where an environment forbids compiled modules, each of the hundreds of processes of the tests compiles them anew.
 unexport PYTHONDONTWRITEBYTECODE
 RPPM = .venv/bin/rppm
@@ -118,6 +118,11 @@ pairs: setup ## Compare the .blend files of SCENES with Cycles, to out/pairs/ (P
 survey: setup ## Compare small files as beginners make them with Cycles, to out/survey/ (PAIRS=name: some; done ones are kept)
 	.venv/bin/python -m tools.beginner_files out/survey/files
 	.venv/bin/python -m tools.pairs out/survey/files --out out/survey --samples 32 --cycles-samples 64 $(PAIRS)
+
+SEEDS ?= 0-7
+combined: setup ## Compare random files that combine features with Cycles, to out/combined/ (SEEDS=0-7; PAIRS=name: some; done ones are kept)
+	.venv/bin/python -m tools.combined_files out/combined/files --seeds $(SEEDS)
+	.venv/bin/python -m tools.pairs out/combined/files --out out/combined --samples 64 --cycles-samples 256 $(PAIRS)
 
 TESTS ?= tests/parity
 references: setup ## Keep what Cycles gives for the parity tests in tests/parity/references/ (TESTS=tests/parity/lights/test_lights.py)

@@ -37,7 +37,7 @@ def sky_radiance(sky: Sky, directions: np.ndarray, space: WorkingSpace = REC709)
     return _FORMULAS[sky.sky_type](sky, directions, space)
 
 
-def sky_picture(sky: Sky, height: int = 256, space: WorkingSpace = REC709) -> np.ndarray:
+def sky_picture(sky: Sky, height: int = 512, space: WorkingSpace = REC709) -> np.ndarray:
     """(height, 2 height, 4) float32 equirectangular pixels as scene.Image and World take them, row 0 looking down.
 
     Each pixel is the radiance in its middle; the horizon lies between two rows. Without the sun's disk, which would

@@ -17,6 +17,8 @@ class Instancer(NamedTuple):
 
     uid: int
     """session_uid of the object."""
+    color: tuple[float, ...]
+    """Color and alpha of its instances, which Blender gives them in place of their objects' own."""
     visibility: RayVisibility
     """Rays that see the object itself."""
     layer_visibility: RayVisibility
@@ -34,7 +36,8 @@ class Instancer(NamedTuple):
     def passed_on(self) -> tuple:
         """All that its instances have of it, which is equal where instancers pass on the same."""
         visibility = int(self.layer_visibility)  # flags of their own take long to hash
-        return visibility, self.holdout, self.shadow_catcher, self.light_group, self.linking, self.has_particles
+        flags = visibility, self.holdout, self.shadow_catcher, self.has_particles
+        return self.color, *flags, self.light_group, self.linking
 
 
 class InstanceDescription(NamedTuple):
@@ -67,7 +70,7 @@ class InstanceDescription(NamedTuple):
             self.materials,
             self.object_name,
             self.object_index,
-            self.color,
+            instancer.color,
             0.0,
             common_visibility(self.visibility, instancer.layer_visibility),
             instancer.holdout,

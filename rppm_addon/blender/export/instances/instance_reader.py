@@ -62,6 +62,7 @@ class InstanceReader:
         layer_visibility, holdout = self._context.masks.of(source, visibility, source.is_holdout)
         return Instancer(
             uid,
+            source.color[:],
             visibility,
             layer_visibility,
             holdout,
@@ -216,17 +217,16 @@ class InstanceReader:
     ) -> InstanceDescription:
         context, name = self._context, source.name
         if multiplied is None:
-            holder, random = source, _random(name)
+            random = _random(name)
             visibility, holdout = context.masks.of(source, visibility, source.is_holdout)
         else:
-            # What Blender makes up for an instance may have another color than the object that it stands for.
-            holder, random, holdout = multiplied.instance_object, 0.0, False
+            random, holdout = 0.0, False
         description = InstanceDescription(
             mesh,
             materials,
             name,
             source.pass_index,
-            holder.color[:],
+            source.color[:],
             random,
             visibility,
             holdout,

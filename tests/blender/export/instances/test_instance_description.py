@@ -26,8 +26,9 @@ def description(**members) -> InstanceDescription:
 
 def instancer(**members) -> Instancer:
     values = {
-        "uid": 5, "visibility": RayVisibility.ALL, "layer_visibility": RayVisibility.ALL, "holdout": False,
-        "shadow_catcher": False, "light_group": "", "linking": None, "has_particles": False,
+        "uid": 5, "color": (0.5, 0.6, 0.7, 0.8), "visibility": RayVisibility.ALL,
+        "layer_visibility": RayVisibility.ALL, "holdout": False, "shadow_catcher": False, "light_group": "",
+        "linking": None, "has_particles": False,
     }  # fmt: skip
     return Instancer(**values | members)
 
@@ -67,7 +68,7 @@ def test_an_instance_has_its_own_random_number_particle_and_attributes():
 def test_an_instancer_passes_its_properties_on(own, passed_on, expected):
     described = description(**own)
     multiplied = described.multiplied_by(instancer(**passed_on))
-    changed = {"holdout": False, "linking": None, "random": 0.0, **expected}
+    changed = {"holdout": False, "linking": None, "random": 0.0, "color": (0.5, 0.6, 0.7, 0.8), **expected}
     assert multiplied == described._replace(**changed)
 
 
@@ -89,13 +90,21 @@ def test_each_of_two_instancers_of_one_mesh_passes_on_its_own(scene):
         empty = show_collection(scene, collection, location=(0.0, 0.0, float(number)))
         empty.is_holdout, empty.is_shadow_catcher = number % 2 == 1, number == 2
         empty.visible_glossy = number != 4
+        empty.color = (0.1 * number, 0.0, 1.0, 1.0)
     exported = export(scene)
     assert len(exported.meshes) == len(exported.materials) == 1 and len(exported.instances) == 6
     for instance in exported.instances:
         number = round(instance.matrix[2, 3])
         assert instance.holdout is (number % 2 == 1) and instance.shadow_catcher is (number == 2)
         assert (RayVisibility.GLOSSY in instance.visibility) is (number != 4)
-        assert instance.color == pytest.approx((0.5, 0.25, 0.125, 1.0)) and instance.materials == [0]
+        assert instance.color == pytest.approx((0.1 * number, 0.0, 1.0, 1.0)) and instance.materials == [0]
+
+
+def test_instances_on_vertices_have_the_color_of_their_instancer(scene):
+    host, leaf = add_mesh(scene, "Host"), add_mesh(scene, "Leaf", color=(0.5, 0.25, 0.125, 1.0))
+    leaf.parent, host.instance_type, host.color = host, "VERTS", (0.0, 1.0, 0.0, 1.0)
+    colors = {instance.color for instance in export(scene).instances[1:5]}
+    assert colors == {(0.0, 1.0, 0.0, 1.0)}
 
 
 def test_placements_leave_out_what_has_no_extent_and_forget_single_objects_that_are_multiplied():

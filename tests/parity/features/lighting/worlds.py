@@ -163,6 +163,19 @@ for _name, _properties in SKIES.items():
     world("Sky Texture", _name, _sky(_name.partition(",")[0], _properties))
 
 
+def _horizon() -> None:
+    """The camera looks at the horizon below a low sun, where radiance falls to a third within half a degree."""
+    stage.empty()
+    net = Net(bpy.context.scene.world.node_tree)
+    sky = net.node("TexSky", sky_type="MULTIPLE_SCATTERING", sun_disc=False, sun_elevation=0.23, sun_rotation=0.0)
+    net.set(background().inputs["Color"], sky.outputs[0])
+    background().inputs["Strength"].default_value = 0.1
+    camera((0.0, 0.0, 0.0), (0.0, 1.0, -0.02), 40.0)
+
+
+add(Row("Sky Texture", "horizon", _horizon, Kind.VALUES, reason=MAPPED["reason"]))
+
+
 def _limited(bounces, given):
     def limit(net):
         bpy.context.scene.world.cycles.max_bounces = bounces

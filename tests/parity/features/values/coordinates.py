@@ -138,6 +138,21 @@ def _with_material_index(net):
 
 value("Object Info", "Material Index, set", _with_material_index, 0.1)
 
+
+def _instanced() -> None:
+    """The ball as the instance of a collection whose instancer has a color of its own."""
+    _properties()
+    ball, scene = bpy.data.objects["Ball"], bpy.context.scene
+    collection = bpy.data.collections.new("Balls")
+    scene.collection.objects.unlink(ball)
+    collection.objects.link(ball)
+    empty = link_object(None, name="Empty")
+    empty.instance_type, empty.instance_collection, empty.color = "COLLECTION", collection, (0.1, 0.4, 0.9, 0.3)
+
+
+for _output in ("Color", "Alpha"):
+    value("Object Info", f"{_output} of instances", socket("ObjectInfo", _output), prepare=_instanced)
+
 # --- tangents, normal maps and bump -------------------------------------------------------------------
 
 
