@@ -117,6 +117,10 @@ UNNAMED = (
         "what camera rays and final gathers find of it counts for the group of one of them",
     ),
     (
+        "Thin films on rough surfaces",
+        "their color is that of the angle of view, not of each microfacet: up to 7 % of a channel at roughness 0.7",
+    ),
+    (
         "Volume Scatter, in the Ray Visibility of what neither emits light nor is the world",
         "volumes see it as other surfaces do",
     ),
