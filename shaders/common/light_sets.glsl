@@ -7,6 +7,10 @@
 float signed_code(bool flag, uint number) { return flag ? 1.0 + float(number) : -float(number); }
 uint code_number(float code) { return uint(code > 0.0 ? code - 1.0 : -code); }
 
+// The code of a number without the flag, for light that a mirror reflects: code_number leaves out the half.
+float reflected_code(uint number) { return -float(number) - 0.5; }
+bool is_reflected_code(float code) { return fract(code) != 0.0; }
+
 // Of a triangle, whose first corner has a code as its fourth component; the flag: it casts no shadow.
 uint light_set_of(float code) { return code_number(code) & 63u; }
 uint shadow_set_of(float code) { return code_number(code) >> 6u & 63u; }

@@ -271,7 +271,8 @@ void main() {
         arriving.radiance *= total / (takes_reflected ? reflected_weight : weight);
     }
     uint link = arriving_link(arriving, takes_reflected);
-    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, signed_code(gathered, link));
+    float code = takes_reflected ? reflected_code(link) : signed_code(gathered, link);
+    contributions[index] = vec4(parameters.sample_weight * arriving.radiance, code);
     light_triangles[index] = keep_sampled_emitter(arriving.triangle, index);
     if (parameters.splits_light != 0u)
         light_splits[index] = LightSplit(parts.glossy, arriving.light, parts.transmission, 0.0);

@@ -212,7 +212,15 @@ class DirectLight(Stage):
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
-            context.resolve.shadow_rays(rays.buffer, hits.buffer, closures.buffer, passing, iteration.number, segment)
+            context.resolve.shadow_rays(
+                rays.buffer,
+                hits.buffer,
+                closures.buffer,
+                self.contributions.buffer,
+                passing,
+                iteration.number,
+                segment,
+            )
             passing.run(self._pass, blocks, {"surface_count": surfaces})
             passing.keep(rays.buffer)
             if passing.known_empty:

@@ -244,13 +244,18 @@ class Resolve(BufferSet):
         rays: moderngl.Buffer,
         hits: moderngl.Buffer,
         closures: moderngl.Buffer,
+        contributions: moderngl.Buffer,
         active: ActivePaths,
         iteration: int,
         segment: int,
     ) -> None:
-        """Fill the closures of what active shadow rays meet, as run does."""
+        """Fill the closures of what active shadow rays meet, as run does.
+
+        contributions: vec4 of each ray; the last component tells rays along the reflections of mirrors
+        (shaders/common/light_sets.glsl), which surfaces see as glossy rays.
+        """
         self._resolve(
-            {"Rays": rays, "Hits": hits, "Closures": closures, "PathFlags": rays, "AovValues": closures},
+            {"Rays": rays, "Hits": hits, "Closures": closures, "PathFlags": contributions, "AovValues": closures},
             active,
             {
                 "iteration": iteration,

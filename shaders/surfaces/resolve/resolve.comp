@@ -73,6 +73,13 @@ float straight_length(uint index) {
                : 0.0;
 }
 
+// A shadow ray along the reflection of a mirror stands for the path that the mirror would send there, and comes to
+// surfaces as one.
+uint shadow_ray_kind(uint index) {
+    float code = uintBitsToFloat(path_words[4u * index + 3u]);  // the last component of a contribution
+    return is_reflected_code(code) ? RAY_GLOSSY | RAY_SINGULAR : RAY_SHADOW;
+}
+
 // flags: of the path that came there; index: its number, whose closure gets the offset of its rays.
 Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     vec3 v0, v1, v2;
@@ -98,7 +105,7 @@ Surface surface_at(Ray ray, Hit hit, uint flags, uint index) {
     // Where lights are sampled, no path has come to them, and it is of no kind, as in Cycles.
     surface.ray = parameters.path_kind == PATH_OF_CAMERA   ? camera_ray_kind(flags)
                   : parameters.path_kind == PATH_OF_PHOTON ? RAY_DIFFUSE
-                  : parameters.path_kind == PATH_OF_SHADOW ? RAY_SHADOW
+                  : parameters.path_kind == PATH_OF_SHADOW ? shadow_ray_kind(index)
                                                            : 0u;
     surface.ray_length = straight_length(index) + hit.distance;
     uint depth = path_depth(index);

@@ -56,8 +56,14 @@ def card_for_cameras_alone_below_a_lamp() -> None:
     light("POINT", 300.0, place(at=(0.0, 0.5, 3.0)), shadow_soft_size=0.2)
 
 
-def hidden_card() -> None:
-    floor(0.0, 0.5)
+def card_for_cameras_alone_in_a_smooth_floor() -> None:
+    """The floor's reflection shows the card before the lamp, though shadow rays find the lamp through the card."""
+    hidden_card(0.0)
+    light("AREA", 100.0, place(at=(0.0, 3.25, 2.6), turn=(-50.0, 0.0, 0.0)), shape="SQUARE", size=1.0)
+
+
+def hidden_card(floor_roughness: float = 0.5) -> None:
+    floor(0.0, floor_roughness)
     made = material(DIFFUSE, Color=0.8)
     net = Net(made.node_tree)
     mix, path, clear = net.node("MixShader"), net.node("LightPath"), net.node("BsdfTransparent")
@@ -77,6 +83,7 @@ def hidden_card() -> None:
         a_panel_that_shines_through_a_pane,
         card_for_cameras_alone,
         card_for_cameras_alone_below_a_lamp,
+        card_for_cameras_alone_in_a_smooth_floor,
     ],
 )
 def test_light_through_transparent_surfaces(renderer, build):
