@@ -32,7 +32,7 @@ from .settings import (
     RenderSettings,
 )
 from .storage.storage import load_scene, save_scene
-from .volumes import Volume, VolumeGrid
+from .volumes import Volume, VolumeGrid, VolumeMotion
 
 __all__ = [
     "ALL_SETS",
@@ -79,6 +79,7 @@ __all__ = [
     "Texels",
     "Volume",
     "VolumeGrid",
+    "VolumeMotion",
     "World",
     "load_scene",
     "save_scene",

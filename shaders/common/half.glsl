@@ -11,3 +11,10 @@ float half_to_float(uint bits) {
 
 // The first in the lower half.
 vec2 two_halves(uint bits) { return vec2(half_to_float(bits & 0xffffu), half_to_float(bits >> 16)); }
+
+// The nearest half float to a number from 0 to the greatest one.
+uint float_to_half(float value) {
+    value = clamp(value, 0.0, 65504.0);
+    if (value < 6.103515625e-5) return uint(value * 16777216.0 + 0.5);
+    return (floatBitsToUint(value) + 0x1000u >> 13) - (112u << 10);
+}

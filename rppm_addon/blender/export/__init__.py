@@ -16,6 +16,7 @@ from .camera.view import export_view
 from .common.report import ExportStopped, Report
 from .common.slices import ExportProgress
 from .context import ExportContext
+from .geometry.volumes.velocities import VelocityBlur
 from .instances.objects import ObjectExporter
 from .omissions import OmissionList, objects_of
 from .shading.lights.world import export_world
@@ -69,8 +70,10 @@ def export_scene(
         scene.settings = preview_settings(scene.settings)
     scene.settings.validate()
     context.culling = Culling(source, scene.camera)
-    objects = ObjectExporter(context)
     blurred, neighbors = is_blurred(depsgraph, engine), wants_neighbors(depsgraph, engine)
+    if blurred:
+        context.velocity_blur = VelocityBlur.of(source.render)
+    objects = ObjectExporter(context)
     placed = objects.export(depsgraph, identify=blurred or neighbors)
     scene.world, suns = export_world(world_of(depsgraph), context)
     if not is_preview:  # whose scene is Blender's own

@@ -9,6 +9,7 @@ from .camera.culling import Culling
 from .common.report import Report
 from .geometry.meshes.base_meshes import BaseMeshes
 from .geometry.strands.curve_settings import CurveSettings, curve_settings
+from .geometry.volumes.velocities import VelocityBlur
 from .images.images import ImageTable
 from .images.texture_limit import texture_limit
 from .view_layer.layers import LayerFilter, LayerMasks, world_of
@@ -32,8 +33,8 @@ class ExportContext:
     """Culling of objects that the camera does not see; at first it leaves nothing out."""
     light_links: LightLinks = field(default_factory=LightLinks)
     filter: LayerFilter = field(default_factory=LayerFilter)
-    blurs_motion: bool = False
-    """True where the scene has Motion Blur on."""
+    velocity_blur: VelocityBlur | None = None
+    """Time in which velocities blur volumes; None where they do not."""
     curves: CurveSettings = field(default_factory=CurveSettings)
     is_render: bool = True
     """Whether Blender evaluated what renders show, and not viewports."""
@@ -71,5 +72,4 @@ class ExportContext:
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
         self.filter = LayerFilter.of(layer)
-        self.blurs_motion = scene.render.use_motion_blur
         self.has_light_groups = len(depsgraph.view_layer.lightgroups) > 0

@@ -147,12 +147,14 @@ class DeviceScene:
 
         The deep cubemap's center stays: it changes no picture, and a camera that moves alone costs nothing.
         """
-        self.scene = self._motion.scene_at(iteration)
+        time = self._motion.time_of(iteration)
+        self.scene = self._motion.scene_at(time)
         changes = changes_between(self._uploaded_scene, self.scene)
         self._uploaded_scene = None
         with self._timers.stage("motion"):
             self._build_materials(changes)
             self._build_parts(changes, iteration.photon_count, keep_learned=True)
+            self.materials.media.advect(time)
         self._build_acceleration(self._motion.scene, changes, center_tolerance=np.inf)
         self._uploaded_scene = snapshot(self.scene)
 

@@ -78,9 +78,12 @@ class SceneMotion:
         before, self.swept = self.swept, swept_bounds(scene)
         return not np.array_equal(self.swept, before)
 
-    def scene_at(self, iteration: Iteration) -> Scene:
-        """Return the scene as it is at an iteration's moment."""
-        time = require(self.scene.shutter).time_of(moment(iteration.number, iteration.seed))
+    def time_of(self, iteration: Iteration) -> float:
+        """Return an iteration's moment in the time of the shutter, 0 to 1."""
+        return require(self.scene.shutter).time_of(moment(iteration.number, iteration.seed))
+
+    def scene_at(self, time: float) -> Scene:
+        """Return the scene as it is at a time of the shutter."""
         return require(self._moving).at(time)
 
     def iterations_of_bands(self, bands: Sequence[Band], iteration: Iteration) -> list[tuple[Band, Iteration]]:

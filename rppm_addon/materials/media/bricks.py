@@ -90,6 +90,8 @@ class BrickGrid:
     """(n,) uint32: the table of bricks, with places counted from the first word or 0, and the voxels of the bricks."""
     table_size: int
     """Bricks of the table."""
+    channel_count: int
+    """Numbers of each voxel."""
     channels: int
     """Codes of the channels of absorption, scattering and emission, a byte each from the lowest."""
     scales: np.ndarray
@@ -108,10 +110,11 @@ def usable(values: np.ndarray) -> np.ndarray:
     return np.clip(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), 0.0, _LARGEST)
 
 
-def brick_grid(coefficients: Sequence[np.ndarray | None]) -> BrickGrid:
+def brick_grid(coefficients: Sequence[np.ndarray | None], kept: np.ndarray | None = None) -> BrickGrid:
     """Store absorption, scattering and emission, each (bricks, BRICK_VOXELS, 3) float32 or None for none.
 
     A coefficient that is a density times one color takes one channel, which another of the same density shares.
+    kept: (bricks,) bool, bricks that are stored without effect as well.
     """
     channels: list[np.ndarray] = []
     codes, scales = [], np.zeros((3, 3), np.float32)
@@ -131,7 +134,8 @@ def brick_grid(coefficients: Sequence[np.ndarray | None]) -> BrickGrid:
         if same == len(channels):
             channels.append(field)
     bricks = next((len(values) for values in coefficients if values is not None), 1)
-    return BrickGrid(*_words(channels, bricks), sum(code << 8 * place for place, code in enumerate(codes)), scales)
+    packed = sum(code << 8 * place for place, code in enumerate(codes))
+    return BrickGrid(*_words(channels, bricks, kept), len(channels), packed, scales)
 
 
 def _density(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
@@ -152,12 +156,13 @@ def _are_alike(field: np.ndarray, other: np.ndarray) -> bool:
     return not (np.abs(field - other) > _ALIKE * other + _NOTHING).any()
 
 
-def _words(channels: list[np.ndarray], bricks: int) -> tuple[np.ndarray, int]:
+def _words(channels: list[np.ndarray], bricks: int, kept: np.ndarray | None) -> tuple[np.ndarray, int]:
     """Words of channels, each (bricks, BRICK_VOXELS), and the length of their table."""
     table = np.zeros(bricks, np.uint32)
     if not channels:
         return table, bricks
     halves = np.stack([channel.astype("<f2") for channel in channels], axis=1)
-    filled = np.flatnonzero(halves.reshape(bricks, -1).any(axis=1))
+    has_effect = halves.reshape(bricks, -1).any(axis=1)
+    filled = np.flatnonzero(has_effect if kept is None else has_effect | kept)
     table[filled] = bricks + np.arange(len(filled)) * (len(channels) * BRICK_VOXELS // 2)
     return np.concatenate([table, np.ascontiguousarray(halves[filled]).reshape(-1).view("<u4")]), bricks

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...gl.buffer_sets import BufferSet, StorageBuffer
+from ...gl.buffer_sets import BufferSet, Part, StorageBuffer
 from ...gl.context.context import Context
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.node_graphs import NodeGraph
@@ -14,6 +14,7 @@ from ...scene.scene import Scene
 from ...scene.volumes import Volume
 from ..records import MEDIUM, PHASE_FUNCTION
 from ..traits.interiors import Evaluate, Interior, Variation
+from .advection import MovingGrid, VoxelAdvection, reached_bricks
 from .bricks import BrickGrid, Lattice, brick_grid, usable
 from .emission_cells import EmissionCells
 
@@ -88,6 +89,13 @@ class BakedMedium:
     """(n,) PHASE_FUNCTION, with the means of the scattering coefficients."""
     emission_cells: EmissionCells | None
     """Voxels that shine."""
+    moving: MovingGrid | None = None
+    """The grid where velocities move its values."""
+
+    @property
+    def word_count(self) -> int:
+        """Words on the device."""
+        return len(self.grid.words) * (1 if self.moving is None else 2)
 
     def record(self, placed: PlacedMedium, first_word: int) -> np.void:
         """The MEDIUM record of a medium with these coefficients, whose words begin at ``first_word``."""
@@ -108,12 +116,15 @@ class MediumGrids(BufferSet):
 
     remedy = "use smaller or fewer volumes that vary"
     _voxels = StorageBuffer("voxels of media", "uint", texel_bytes=4, block="MediumVoxels")
+    _advection = Part(VoxelAdvection)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
         self._baked: dict[tuple[int, ...], BakedMedium] = {}
         self._most = 0
         """Voxels of a grid, at most, in the last bake."""
+        self._first_moved: list[int] = []
+        """Where the words of each grid that moves begin."""
 
     def bake(
         self, scene: Scene, media: list[PlacedMedium], evaluate: EvaluateVoxels, evaluate_once: Evaluate
@@ -137,13 +148,17 @@ class MediumGrids(BufferSet):
             self._bake_all(media, most, evaluate, evaluate_once)
         return self._upload(media)
 
+    def advect(self, time: float) -> None:
+        """Move the values of grids to where their velocities bring them by a time of the shutter, 0 to 1."""
+        self._advection.run(time, self._first_moved, self._voxels.buffer)
+
     def baked(self, placed: PlacedMedium) -> BakedMedium | None:
         """Return a medium of the last bake; None for one without a place."""
         return self._baked.get(placed.key)
 
     @property
     def _word_count(self) -> int:
-        return sum(len(baked.grid.words) for baked in self._baked.values())
+        return sum(baked.word_count for baked in self._baked.values())
 
     def _bake_all(
         self, media: list[PlacedMedium], most: int, evaluate: EvaluateVoxels, evaluate_once: Evaluate
@@ -163,6 +178,9 @@ class MediumGrids(BufferSet):
             parts.append(baked.grid.words_at(end))
             end += len(parts[-1])
         self._voxels.upload(np.concatenate(parts))
+        moving = {key: baked.moving for key, baked in self._baked.items() if baked.moving is not None}
+        self._first_moved = [firsts[key] for key in moving]
+        self._advection.upload(list(moving.values()))
         found = []
         for placed in media:
             baked_medium = self._baked.get(placed.key)
@@ -187,6 +205,13 @@ def _baked(placed: PlacedMedium, lattice: Lattice, evaluate: EvaluateVoxels, eva
         function["kind"], function["parameters"] = part.kind, part.parameters(evaluate_once)
         scattering = values if scattering is None else scattering + values
     emission = coefficient(interior.emission)
-    cells = None if emission is None else EmissionCells.of(emission, lattice)
-    grid = brick_grid((coefficient(interior.absorption), scattering, emission))
-    return BakedMedium(placed.source, lattice, grid, functions, cells)
+    coefficients = coefficient(interior.absorption), scattering, emission
+    motion = None if placed.volume is None else placed.volume.motion
+    if motion is None:
+        cells = None if emission is None else EmissionCells.of(emission, lattice)
+        return BakedMedium(placed.source, lattice, brick_grid(coefficients), functions, cells)
+    filled = np.any([values.any(axis=(1, 2)) for values in coefficients if values is not None], axis=0)
+    reached = reached_bricks(filled, lattice, motion)
+    cells = None if emission is None else EmissionCells.swept(emission, lattice, motion, reached)
+    moving = MovingGrid(brick_grid(coefficients, reached), lattice, motion)
+    return BakedMedium(placed.source, lattice, moving.grid, functions, cells, moving)

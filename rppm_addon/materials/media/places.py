@@ -8,7 +8,6 @@ import numpy as np
 
 from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
-from ...scene.volumes import Volume
 from ..records import MAX_MEDIA
 from ..traits.interiors import Interior, Variation
 from .grids import PlacedMedium
@@ -88,7 +87,7 @@ class MediumPlaces:
                 box,
                 instance.matrix,
                 number,
-                None if volume is None else voxel_spacing(volume),
+                None if volume is None else volume.spacing,
                 _density_factor(instance.matrix) if volume is not None and volume.scales_density else 1.0,
                 volume,
                 instance.attributes,
@@ -106,13 +105,6 @@ class MediumPlaces:
             source = (*source, scene.camera)
         box = np.minimum(low, camera), np.maximum(high, camera)
         return PlacedMedium(world, box, np.eye(4), WORLD, None, 1.0, None, {}, source)
-
-
-def voxel_spacing(volume: Volume) -> np.ndarray | None:
-    """(3,) distances between the voxels of the finest grid along the axes of the object, meters; None without any."""
-    found = [np.abs(grid.matrix[:3, :3]).max(axis=1) for grid in volume.grids.values() if grid.values.size > 1]
-    usable = [spacing for spacing in found if np.isfinite(spacing).all() and (spacing > 0.0).all()]
-    return min(usable, key=np.prod) if usable else None
 
 
 def mesh_box(mesh: Mesh) -> tuple[np.ndarray, np.ndarray] | None:

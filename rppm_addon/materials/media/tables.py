@@ -91,6 +91,10 @@ class MediaTables(BufferSet):
         world = self._even[0] if self.places.world is None else baked.pop()
         self._upload([world, *self._even[1:], *baked])
 
+    def advect(self, time: float) -> None:
+        """Move what velocities move in volumes to where it is at a time of the shutter, 0 to 1, after ``bake``."""
+        self._grids.advect(time)
+
     def list_emissive(self, scene: Scene, placed: Sequence[Instance], bounds: tuple[np.ndarray, np.ndarray]) -> None:
         """List the media that emit light, after ``bake``, and their light groups.
 

@@ -25,7 +25,7 @@ and the number of its values; no components: the object has no such attribute.""
 
 
 class VolumeAttributes(BufferSet):
-    """The buffers VolumeGrids and VolumeValues (shaders/materials/volume_attributes.glsl), for one object at a time."""
+    """The buffers VolumeGrids and VolumeValues (shaders/materials/volume_grids.glsl), for one object at a time."""
 
     remedy = "use smaller grids in volumes"
     _grids = StorageBuffer("grids of a volume", VOLUME_GRID_ENTRY, block="VolumeGrids")
@@ -40,10 +40,15 @@ class VolumeAttributes(BufferSet):
         if self._uploaded and self._uploaded[0] is volume and self._uploaded[1:] == (list(names), dict(whole)):
             return
         self._uploaded = ()  # should an upload fail
-        entries = VOLUME_GRID_ENTRY.zeros(max(len(names), 1))
+        grids = {} if volume is None else volume.grids
+        self.upload_grids([_even_grid(whole[name]) if name in whole else grids.get(name) for name in names])
+        self._uploaded = volume, list(names), dict(whole)
+
+    def upload_grids(self, grids: Sequence[VolumeGrid | None]) -> None:
+        """Hold grids by their numbers; None: an object has none."""
+        entries = VOLUME_GRID_ENTRY.zeros(max(len(grids), 1))
         parts, end = [np.zeros(1, np.float32)], 1
-        for entry, name in zip(entries, names, strict=False):
-            grid = _even_grid(whole[name]) if name in whole else None if volume is None else volume.grids.get(name)
+        for entry, grid in zip(entries, grids, strict=False):
             if grid is None or not grid.values.size:
                 continue
             matrix = np.linalg.pinv(np.asarray(grid.matrix, np.float64))
@@ -55,7 +60,6 @@ class VolumeAttributes(BufferSet):
             end += grid.values.size
         self._grids.upload(entries)
         self._values.upload(np.concatenate(parts))
-        self._uploaded = volume, list(names), dict(whole)
 
 
 def _even_grid(value: tuple[float, ...]) -> VolumeGrid:

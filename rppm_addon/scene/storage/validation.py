@@ -23,6 +23,7 @@ from ..meshes import SMOOTH_NORMALS, AttributeDomain, InstanceArray, Mesh
 from ..motion import CameraMovement, Deformation, Movement, Shutter
 from ..node_graphs import Link, NodeGraph
 from ..scene import Scene
+from ..volumes import VolumeMotion
 
 _Label = Callable[[int], str]
 """Function that returns the name in messages of the member at an index."""
@@ -368,6 +369,12 @@ def _check_shutter(shutter: Shutter, label: str) -> None:
         raise SceneError(f"{label}: curve is empty; it must have a value")
 
 
+def _check_volume_motion(motion: VolumeMotion, label: str) -> None:
+    values = motion.displacements.values
+    if values.shape[3] != 3 or not values.size or not np.isfinite(values).all():
+        raise SceneError(f"{label}: displacements must have voxels of three finite numbers each")
+
+
 def _check_texels(scene: Scene, texels: Texels) -> None:
     """A texture that is baked lies on the triangles of its mesh."""
     width, height = scene.camera.resolution
@@ -408,4 +415,5 @@ _EXTRA: dict[type, Callable[[Any, str], None]] = {
     Deformation: _check_times,
     CameraMovement: _check_times,
     Shutter: _check_shutter,
+    VolumeMotion: _check_volume_motion,
 }

@@ -51,6 +51,7 @@ RENDERED = {
         CyclesRenderSettings.rolling_shutter_duration CyclesRenderSettings.rolling_shutter_type
         RenderSettings.frame_map_new RenderSettings.frame_map_old
         RenderSettings.motion_blur_position RenderSettings.motion_blur_shutter ViewLayer.use_motion_blur
+        Volume.velocity_grid Volume.velocity_scale Volume.velocity_unit
     """,
     "strands": """
         CyclesCurveRenderSettings.shape CyclesCurveRenderSettings.subdivisions Object.instance_type

@@ -140,6 +140,13 @@ def moving(scene, folder):
         key.value = value
         key.keyframe_insert("value", frame=frame)
     animate(scene.camera, "location", (0.0, 0.0, 5.0), (0.1, 0.0, 5.0), (0.4, 0.0, 5.0))
+    random = np.random.default_rng(1).random((3, 3, 3, 3))
+    grids = {"density": random[..., 0], "velocity": random, "velocityother": 2.0 * random}
+    wind = bpy.data.volumes.new("Wind")
+    wind.filepath = str(write_vdb(folder / "wind.vdb", np.diag([0.2, 0.2, 0.2, 1.0]), **grids))
+    wind.grids.load()  # Blender looks up the grid of velocities
+    wind.materials.append(_smoke("Wind"))
+    add_object(scene, "Wind", wind, location=(1.0, 1.0, 0.0))
     add_light(scene, "AREA", energy=100.0)
     _world_of_colors(scene)
     blur()

@@ -154,7 +154,7 @@ WITHOUT_EFFECT = {
         CyclesRenderSettings.ao_bounces_render CyclesRenderSettings.fast_gi_method
         CyclesRenderSettings.film_transparent_roughness
         CyclesRenderSettings.sample_offset CyclesRenderSettings.sample_subset_length RenderSettings.threads
-        Volume.velocity_grid Volume.velocity_scale Volume.velocity_unit WorldLighting.distance
+        WorldLighting.distance
     """,
 }
 

@@ -69,11 +69,6 @@ def add_cloud(scene):
     return volume
 
 
-def blow(scene):
-    add_cloud(scene)
-    scene.render.use_motion_blur = True
-
-
 def clip(scene):
     add_cloud(scene).render.clipping = 0.1
 
@@ -84,7 +79,6 @@ USES = {
     "Sample Subset": of_cycles("use_sample_subset"),
     "Sampling Pattern": of_cycles("sampling_pattern", "BLUE_NOISE"),
     "Threads": fix_threads,
-    "Velocity Grid": blow,
     "Shadow Catcher": catch_shadows,
     "Biased volumes": step,
     "Transparent Glass": see_through,

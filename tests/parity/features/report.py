@@ -68,7 +68,6 @@ NAMED = (
      "varies from place to place; it is rendered around the scene only"),
     ("Adaptive Subdivision into more than a million triangles of all objects of a mesh",
      "edges are longer than is asked for", "Adaptive Subdivision leaves edges"),
-    ("Motion Blur of the gas of fluid domains", "gas is sharp", "its gas is sharp, though Motion Blur is on"),
     ("Inputs of a phase function that vary within a volume", "one value stands for all of it",
      "has a phase function that varies from place to place"),
     ("Light Linking of what has a volume that scatters",
@@ -132,6 +131,11 @@ UNNAMED = (
     (
         "Shadow Caustics of objects, lights and the world",
         "photons find the caustics of all objects, as Reflective and Refractive say",
+    ),
+    (
+        "Velocities of volumes, with Motion Blur",
+        "they blur as in Cycles with Biased; without it Cycles cuts off what goes far from where it is in the middle "
+        "of the shutter's time. An object whose Motion Blur is off is sharp, with velocities by frame as well",
     ),
     ("Steps of volumes: Step Rate, Max Steps", "all of a volume is rendered, without bias"),
     ("Device, BVH, tiles and threads of Cycles; Persistent Data of other engines", "pictures do not depend on them"),

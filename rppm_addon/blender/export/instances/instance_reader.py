@@ -117,8 +117,6 @@ class InstanceReader:
     ) -> InstanceDescription | None:
         """Describe a volume, or the gas of a fluid domain; None where it has no voxels."""
         grids = GridSource(source)
-        if self._context.blurs_motion and grids.is_gas:
-            self._context.report.warn(f'Object "{source.name}": its gas is sharp, though Motion Blur is on')
         materials = [self._materials.of_volume(place, grids.is_gas) for place in self._material_slots(source)]
         mesh = self._mesh_index(source, grids, materials, source if multiplied is None else multiplied.parent)
         return None if mesh is None else self._described(source, mesh, materials, visibility, multiplied)

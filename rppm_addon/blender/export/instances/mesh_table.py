@@ -155,7 +155,7 @@ class MeshTable:
                 if isinstance(mesh, bpy.types.Mesh):
                     exported = export_mesh(mesh, name, self._report, before, slices, record)
                 elif isinstance(mesh, GridSource):
-                    exported = export_grids(mesh, name, self._report, before)
+                    exported = export_grids(mesh, name, self._report, before, self._context.velocity_blur)
                 else:
                     exported = export_round(mesh, name, self._context.curves, self._report, before, slices, record)
         self._owners[key] = {owner}

@@ -19,8 +19,6 @@ class Omission:
     """Paths of the properties that say whether it is used, from the block on."""
     is_used: Callable[[bpy.types.ID], bool]
     """By an evaluated object, or by a scene."""
-    counts_in: Callable[[bpy.types.Scene], bool] = bool
-    """Condition on the evaluated scene for it to matter that an object uses it."""
 
 
 def of_cycles(block: bpy.types.bpy_struct, name: str, default: object) -> object:

@@ -52,7 +52,7 @@ class OmissionList:
         without, switched_off = passes_without(layer), passes_of_cycles_only(layer)
         with report.about("omissions"):
             for omission, users in self._users.items():
-                if users and omission.counts_in(scene):
+                if users:
                     report.warn(f"{omission.title} ({listed(users.values())}): {omission.consequence}")
             for omission in OF_SCENES:
                 if omission.is_used(scene):

@@ -172,6 +172,8 @@ class MotionExporter:
             place = bases.get(identity)
             if place is None or not deforms or data is None or place in self._with_velocities:
                 continue
+            if meshes[place].volume is not None:  # a box around the gas of a domain
+                continue
             if time not in self._shapes.get(place, {}) and changed & set(identity[:2]):
                 self._shapes.setdefault(place, {})[time] = self._shape(instance, data, place, meshes[place])
                 self._steps_of_shapes[place] = steps
@@ -282,7 +284,8 @@ class MotionExporter:
             self._camera_movement(scene),
             rolling_duration(self._depsgraph.scene_eval),
         )
-        still = not (shutter.instances or shutter.lights or shutter.meshes or shutter.camera)
+        flows = any(mesh.volume is not None and mesh.volume.motion is not None for mesh in meshes)
+        still = not (shutter.instances or shutter.lights or shutter.meshes or shutter.camera or flows)
         return None if still else shutter
 
     def _movements(self, members: list[Instance] | list[Light], identities: dict[int, Identity]) -> Iterator[Movement]:

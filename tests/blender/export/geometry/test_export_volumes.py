@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Volume objects: grids of OpenVDB files, of geometry nodes and of fluid domains."""
 
-from types import SimpleNamespace
-
 import bpy
 import numpy as np
 import pytest
 from blender_scenes import add_mesh, add_object, export
+from domains_of_gas import domain_of_gas
 from node_trees import add_node, link, multiply_cubes, new_material, node_group
 from support.media.vdb_files import write_vdb
 
@@ -39,14 +38,6 @@ def smoke_material(surface=True, density=1.0):
     if surface:
         link(tree, add_node(tree, "ShaderNodeEmission").outputs[0], output.inputs["Surface"])
     return material
-
-
-@pytest.mark.parametrize("blurs", [True, False])
-def test_velocity_that_blurs_nothing_is_named(scene, tmp_path, blurs):
-    volume_of(scene, write_vdb(tmp_path / "cloud.vdb", MATRIX, density=values(), velocity=values((3,))))
-    scene.render.use_motion_blur = blurs
-    warnings = export(scene).warnings
-    assert any(warning.startswith("Velocity Grid (") for warning in warnings) == blurs
 
 
 def test_a_file_becomes_a_box_of_voxels(scene, tmp_path):
@@ -158,14 +149,7 @@ def test_a_domain_of_gas_that_is_not_baked_shows_nothing(scene):
 def test_grids_of_a_domain_of_gas_fill_its_texture_space():
     """Noise makes them finer than the simulation; voxels come with x first."""
     density = np.random.default_rng(1).random((6, 4, 8)).astype(np.float32)
-    settings = SimpleNamespace(
-        domain_type="GAS", domain_resolution=(3, 2, 4), density_grid=density.transpose(2, 1, 0).ravel(),
-        flame_grid=[], temperature_grid=[], color_grid=[], heat_grid=[],
-    )  # fmt: skip
-    shown = {"show_render": True, "show_viewport": True}
-    modifier = SimpleNamespace(type="FLUID", fluid_type="DOMAIN", domain_settings=settings, **shown)
-    data = SimpleNamespace(texspace_location=(1.0, 0.0, 0.0), texspace_size=(3.0, 2.0, 4.0))
-    (grid,) = gas_domains.read_gas(SimpleNamespace(modifiers=[modifier], data=data)).values()
+    (grid,) = gas_domains.read_gas(domain_of_gas(density_grid=density.transpose(2, 1, 0).ravel())).values()
     np.testing.assert_array_equal(grid.values[1:-1, 1:-1, 1:-1, 0], density)
     np.testing.assert_allclose(grid.matrix @ [1, 1, 1, 1], [-1.5, -1.5, -3.5, 1.0])
     np.testing.assert_allclose(grid.matrix @ [6, 4, 8, 1], [3.5, 1.5, 3.5, 1.0])

@@ -3,6 +3,8 @@
 
 import importlib
 import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -12,6 +14,7 @@ import numpy as np
 
 from .....scene.errors import RppmError
 from .....scene.volumes import VolumeGrid
+from .velocities import merged
 
 MAX_VOXELS = 1 << 24
 """Voxels of a grid, at most; of larger ones each second voxel is read, along each axis, or less."""
@@ -21,11 +24,20 @@ class VolumeError(RppmError):
     """A volume that cannot be read; the message says why and names the remedy."""
 
 
-def read_grids(volume: bpy.types.Volume) -> tuple[dict[str, VolumeGrid], list[str]]:
-    """The grids of an evaluated volume by name, and messages about what is left out.
+@dataclass
+class VolumeFile:
+    """The grids of a volume, read into memory."""
 
-    Raises VolumeError.
-    """
+    grids: dict[str, VolumeGrid] = field(default_factory=dict)
+    """By name, those of velocities aside."""
+    velocities: VolumeGrid | None = None
+    """(x, y, z, 3); None where there are none, or nobody asked for them."""
+    messages: list[str] = field(default_factory=list)
+    """Texts about what is left out."""
+
+
+def read_grids(volume: bpy.types.Volume, with_velocities: bool = False) -> VolumeFile:
+    """The grids of an evaluated volume. Raises VolumeError."""
     grids = volume.grids
     if not grids.load() or not all(grid.load() for grid in grids):  # the first reads their names
         path = bpy.path.abspath(volume.filepath)
@@ -39,17 +51,32 @@ def read_grids(volume: bpy.types.Volume) -> tuple[dict[str, VolumeGrid], list[st
             raise VolumeError(f"{volume.filepath}: {str(error).strip()}; choose another file") from error
         if not is_saved:
             raise VolumeError(f"{volume.filepath}: {grids.error_message or 'it cannot be read'}; choose another file")
-        found, messages = {}, []
+        found, velocities = VolumeFile(), {}
+        names = _velocity_names(volume)
         for name in dict.fromkeys(metadata.name for metadata in openvdb.readAllGridMetadata(path)):
-            if not _is_velocity(volume, name):
+            if with_velocities or name not in names:
                 try:
-                    grid = _read(openvdb.read(path, name), name, messages)
+                    grid = _read(openvdb.read(path, name), name, found.messages)
                 except (RuntimeError, TypeError, ValueError):  # such as of points
-                    messages.append(f'its grid "{name}" holds no numbers and is left out')
+                    found.messages.append(f'its grid "{name}" holds no numbers and is left out')
                     continue
                 if grid is not None:
-                    found[name] = grid
-    return found, messages
+                    (velocities if name in names else found.grids)[name] = grid
+    if velocities:
+        found.velocities = _velocities(volume, velocities)
+        if found.velocities is None:
+            found.messages.append("its velocities are no grid of vectors, nor three grids of the same voxels")
+    return found
+
+
+def _velocities(volume: bpy.types.Volume, found: Mapping[str, VolumeGrid]) -> VolumeGrid | None:
+    """The velocities of a volume among its grids by name; None where they are no vectors."""
+    whole = found.get(volume.velocity_grid)
+    if whole is not None and whole.values.shape[3] == len("XYZ"):
+        return whole
+    components = [found.get(name) for name in _component_names(volume)]
+    scalars = [grid for grid in components if grid is not None and grid.values.shape[3] == 1]
+    return merged(scalars) if len(scalars) == len("XYZ") else None
 
 
 def _module() -> ModuleType:
@@ -67,9 +94,12 @@ def _module() -> ModuleType:
     raise VolumeError("this Blender brings no module openvdb along; use Blender 4.4 or newer for volumes")
 
 
-def _is_velocity(volume: bpy.types.Volume, name: str) -> bool:
-    names = {volume.velocity_grid, volume.velocity_x_grid, volume.velocity_y_grid, volume.velocity_z_grid}
-    return name in names - {""}
+def _component_names(volume: bpy.types.Volume) -> tuple[str, str, str]:
+    return volume.velocity_x_grid, volume.velocity_y_grid, volume.velocity_z_grid
+
+
+def _velocity_names(volume: bpy.types.Volume) -> set[str]:
+    return {volume.velocity_grid, *_component_names(volume)} - {""}
 
 
 def _read(grid: Any, name: str, messages: list[str]) -> VolumeGrid | None:

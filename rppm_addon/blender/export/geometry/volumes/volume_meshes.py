@@ -6,12 +6,13 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from .....scene import Mesh, Volume, VolumeGrid
+from .....scene import Mesh, Volume, VolumeGrid, VolumeMotion
 from .....scene.storage.sharing import keep_equal
 from ...common.report import Report
 from ..meshes.meshes import NO_MESH
-from .gas_domains import read_gas
+from .gas_domains import read_gas, read_gas_velocities
 from .vdb_files import VolumeError, read_grids
+from .velocities import VelocityBlur
 
 _MIDDLE = (0.5, 0.5, 0.5)
 """Location and size of a texture space in which generated coordinates equal object coordinates, as in Cycles."""
@@ -34,26 +35,53 @@ class GridSource:
         """Return the address of the object's data, which tells it from others in memory."""
         return self.source.data.as_pointer()
 
+    @property
+    def is_blurred(self) -> bool:
+        """True where the object's Motion Blur is on."""
+        return getattr(getattr(self.source, "cycles", None), "use_motion_blur", True)
 
-def export_grids(data: GridSource, name: str, report: Report, before: Mesh | None) -> Mesh | None:
-    """The box around the grids of a volume, in its object's space; None where they are empty.
+    def read(self, blur: VelocityBlur | None, report: Report, name: str) -> Volume | None:
+        """The volume with its motion; None where it is empty, or cannot be read, as a warning then says.
 
-    before: what it may resemble; arrays that are the same are its very arrays.
+        blur: None where velocities do not matter. name: that of the object.
+        """
+        blur = blur if self.is_blurred else None
+        if self.is_gas:
+            grids = read_gas(self.source)
+            velocities, scale = read_gas_velocities(self.source) if grids and blur is not None else (None, 1.0)
+            motion = None if blur is None or velocities is None else blur.motion(velocities, scale)
+            return Volume(grids, motion=motion) if grids else None
+        data = self.source.data
+        try:
+            file = read_grids(data, blur is not None)
+        except VolumeError as error:
+            report.warn(f'Object "{name}": {error}. It is left out')
+            return None
+        for message in file.messages:
+            report.warn(f'Object "{name}": {message}')
+        motion = None
+        if blur is not None and file.velocities is not None:
+            motion = blur.motion(file.velocities, data.velocity_scale, data.velocity_unit == "SECOND")
+        return Volume(file.grids, data.render.space == "OBJECT", motion) if file.grids else None
+
+
+def export_grids(
+    data: GridSource, name: str, report: Report, before: Mesh | None, blur: VelocityBlur | None = None
+) -> Mesh | None:
+    """The box around the grids of a volume and where its velocities bring them, in its object's space; None where they
+    are empty.
+
+    before: what it may resemble; arrays that are the same are its very arrays. blur: None where velocities do not
+    matter.
     """
-    try:
-        grids, messages = (read_gas(data.source), []) if data.is_gas else read_grids(data.source.data)
-    except VolumeError as error:
-        report.warn(f'Object "{name}": {error}. It is left out')
-        return None
-    for message in messages:
-        report.warn(f'Object "{name}": {message}')
-    if not grids:
+    volume = data.read(blur, report, name)
+    if volume is None:
         return None
     before = before or NO_MESH
-    is_in_object = not data.is_gas and data.source.data.render.space == "OBJECT"
-    volume = Volume(grids, is_in_object)
-    places = np.concatenate([_corners(grid) for grid in grids.values()])
+    places = np.concatenate([_corners(grid) for grid in volume.grids.values()])
     low, high = places.min(axis=0), places.max(axis=0)
+    if volume.motion is not None:
+        low, high = _swept(low, high, volume.motion, volume.spacing)
     corners = np.array([[(low, high)[number >> axis & 1][axis] for axis in range(3)] for number in range(8)])
     texture = (
         (data.source.data.texspace_location[:], data.source.data.texspace_size[:])
@@ -75,6 +103,19 @@ def export_grids(data: GridSource, name: str, report: Report, before: Mesh | Non
         texture_size=tuple(texture[1]),
         volume=volume,
     )
+
+
+def _swept(
+    low: np.ndarray, high: np.ndarray, motion: VolumeMotion, spacing: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """A box around voxels, larger by as many voxels as these move, but no further than there are velocities."""
+    if spacing is None:
+        return low, high
+    ends = _corners(motion.displacements)
+    down, up = motion.reach
+    lowest, highest = (np.maximum(low + down, ends.min(axis=0)), np.minimum(high + up, ends.max(axis=0)))
+    steps_down, steps_up = np.ceil((low - lowest) / spacing), np.ceil((highest - high) / spacing)
+    return low - np.maximum(steps_down, 0.0) * spacing, high + np.maximum(steps_up, 0.0) * spacing
 
 
 def _corners(grid: VolumeGrid) -> np.ndarray:
