@@ -176,6 +176,17 @@ void set_shadow_media(uint index, uint flags) {
 #endif
 }
 
+#if defined(MEDIA) && !defined(PORTALS)
+// An even environment lights a diffuse surface by the cosine. Behind a medium neighbors do not reuse what is found.
+void sample_even_world(inout LightSample sampled, Closure closure, vec2 u) {
+    if (!environment_is_even() || closure_lobes(closure) > 0 || largest(closure.translucent) > 0.0) return;
+    vec3 normal = unpack_unit_vector(closure.diffuse_normal);
+    sampled.direction = sample_cosine_hemisphere(normal, u);
+    sampled.pdf = max(dot(normal, sampled.direction), 1e-6) / PI;
+    sampled.weight = world_radiance(sampled.direction) / sampled.pdf;
+}
+#endif
+
 // Of a light that is chosen by what it may give at the point.
 Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 throughput, LobeSelection lobes,
                              vec3 wo, bool gathered, bool gathers, uvec4 choices, out Parts parts) {
@@ -189,6 +200,9 @@ Arriving arriving_from_light(uint index, CameraPath path, Closure closure, vec3 
         chosen_environment_irradiance(closure.position, gathers), u.x, u.y);
     Light light = lights[choice.light];
     LightSample sampled = sample_light(light, choice.triangle, closure.position, u.zw);
+#if defined(MEDIA) && !defined(PORTALS)
+    if (gathered && light.kind == LIGHT_WORLD) sample_even_world(sampled, closure, u.zw);
+#endif
     float side = dot(facing, sampled.direction);
     bool too_far = bounces_of(path.depth) > light.max_bounces;
     // All at once, since what each branch gives back would be kept beside what others compute.
@@ -224,6 +238,27 @@ uint arriving_link(Arriving arriving, bool reflected) {
     return reflected && (light.flags & LIGHT_SHADOWLESS) != 0u ? 0u : light.link;
 }
 
+// Whether no light can be scattered where a path arrives.
+bool is_unlit(CameraPath path, Ray ray, Closure closure) {
+#ifdef MEDIA
+    // Surfaces of volumes alone.
+    if (closure_lobes(closure) == 0 && !(largest(closure.diffuse + closure.translucent) > 0.0)) return true;
+#endif
+    return !(ray.maximum_distance > 0.0) || !closure_hit(closure) || is_last_vertex(path);
+}
+
+// The lobes by which the path may go on, whether or not media have scattered it before. throughput: at the surface.
+LobeSelection select_lobes(uint index, CameraPath path, Ray ray, Closure closure, vec3 throughput, bool gathers) {
+    bool is_camera_ray = (path.flags & PATH_CAMERA_TRANSPARENT) != 0u;
+    LobeSelection lobes = select_lobes(index, closure, throughput, -ray.direction, gathers, is_camera_ray);
+#ifdef MEDIA
+    if (!(path.medium_passing < 1.0)) return lobes;
+    vec3 passing = segment_transmittance(path.flags, ray.origin, ray.direction, closure.distance);
+    lobes = passed_media(lobes, dot(passing, vec3(1.0 / 3.0)), path.flags);
+#endif
+    return lobes;
+}
+
 void leave_no_light(uint index) {
     shadow_rays[index].maximum_distance = 0.0;
     contributions[index] = vec4(0.0);
@@ -238,7 +273,7 @@ void main() {
     Closure closure = closures[index];
     CameraPath path = camera_paths[index];
     uint flags = path.flags;
-    if (!(ray.maximum_distance > 0.0) || !closure_hit(closure) || is_last_vertex(path)) return;
+    if (is_unlit(path, ray, closure)) return;
     limit_transparency(closure, path.depth, iteration.transparent_max_bounces);
     bool gathered = is_final_gather(path), gathers = can_gather(path, closure);
     vec3 throughput = path.throughput * segment_transmittance(flags, ray.origin, ray.direction, closure.distance);
@@ -248,8 +283,7 @@ void main() {
     fiber_seed = choices.w + 2654435769u * parameters.light_sample;
 #endif
     vec3 viewer = -ray.direction;
-    LobeSelection lobes =
-        select_lobes(index, closure, throughput, viewer, gathers, (flags & PATH_CAMERA_TRANSPARENT) != 0u);
+    LobeSelection lobes = select_lobes(index, path, ray, closure, throughput, gathers);
     Parts parts;  // shares of it
     Arriving arriving =
         arriving_from_light(index, path, closure, throughput, lobes, viewer, gathered, gathers, choices, parts);

@@ -52,7 +52,7 @@ goes on from ``position`` by ``direction`` and ``throughput``; ``phase_pdf`` is 
 environment, 1/sr."""
 StorageBlock("MediumVertices", "MediumVertex medium_vertices[];")
 
-_MOST_VERTICES, _MOST_VERTICES_IN_GRIDS = 8, 4
+_MOST_VERTICES, _MOST_VERTICES_IN_GRIDS = 31, 8
 """Vertices of a camera path in media, behind which it takes photons; and where there are grids, in which rays cost
 more."""
 

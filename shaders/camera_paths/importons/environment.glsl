@@ -4,18 +4,16 @@
 
 // Sampling of the environment by shadow rays from the origin of a ray, in the ray's direction.
 struct EnvironmentSampling {
-    float pdf;          // 1/sr, 0 where rays alone bring the environment
-    float nominal_pdf;  // 1/sr, without portals and for an uneven environment
-    bool is_reused;     // whether neighboring pixels reuse the radiance
+    float pdf;       // 1/sr, 0 where rays alone bring the environment
+    bool is_reused;  // whether neighboring pixels reuse the radiance
 };
 
 // Rays alone bring an even environment to a final gather, but for light through portals. Neighbors reuse that: its
 // shadows are as soft as those of indirect light.
 EnvironmentSampling environment_sampling(vec3 position, vec3 direction) {
-    float nominal_pdf = world_shadow_ray_pdf(direction);
     bool rays_alone = iteration.final_gather != 0u && environment_is_even();
     EnvironmentSampling sampling =
-        EnvironmentSampling(rays_alone ? 0.0 : nominal_pdf, nominal_pdf, environment_is_even());
+        EnvironmentSampling(rays_alone ? 0.0 : world_shadow_ray_pdf(direction), environment_is_even());
 #ifdef PORTALS
     PortalView portals = view_portals(position, direction, NO_PORTAL);
     if (portals.solid_angle > 0.0) sampling.pdf = iteration.world_selection * mixed_world_pdf(portals, direction);
@@ -44,7 +42,8 @@ vec4 background_radiance(CameraPath path, vec3 environment, float shadow_ray_pdf
 }
 
 #ifdef MEDIA
-// The environment at the end of a ray that a medium has scattered, which shadow rays from there bring as well.
+// The environment at the end of a ray that a medium has scattered, which shadow rays from there bring as well where it
+// is uneven.
 void gather_environment_in_medium(PathSegment segment, vec3 environment, float shadow_ray_pdf) {
     CameraPath path = segment.path;
     if ((path.flags & PATH_CAUSTIC) != 0u || !(path.scatter_pdf > 0.0)) return;
@@ -68,7 +67,7 @@ void gather_environment(PathSegment segment, vec3 environment, EnvironmentSampli
     }
 #ifdef MEDIA
     if (is_medium_gather(path)) {
-        gather_environment_in_medium(segment, environment, sampling.nominal_pdf);
+        gather_environment_in_medium(segment, environment, sampling.pdf);
         return;
     }
 #endif

@@ -56,6 +56,7 @@ void handle_surface(PathSegment segment, uint history, vec3 lights) {
     leave_importon(vertex, lobes, samples.importon);
 #ifdef MEDIA
     if (vertex.path.medium_passing == SCATTERED_BY_MEDIUM) return;
+    lobes = passed_media(lobes, vertex.path.medium_passing, vertex.path.flags);
     vertex.path.throughput /= max(vertex.path.medium_passing, 1e-20);
 #endif
     sample_next_ray(vertex, lobes, samples);

@@ -45,6 +45,16 @@ LobeSelection select_lobes(uint path, Closure closure, vec3 throughput, vec3 wo,
     return selection;
 }
 
+#ifdef MEDIA
+// The selection of a path that the media along its ray have let pass, and whose throughput is larger by that; passing:
+// the probability with which they do. flags: of the path.
+LobeSelection passed_media(LobeSelection selection, float passing, uint flags) {
+    float weight = 1.0 / max(passing, 1e-20), total = weight * selection.total;
+    return LobeSelection(weight * selection.specular, weight * selection.stored, total,
+                         survival_probability(total, (flags & PATH_CAMERA_TRANSPARENT) != 0u));
+}
+#endif
+
 // Probability that a path goes on by a lobe of this weight, survival included.
 float selection_probability(float weight, LobeSelection selection) {
     return weight * selection.survival / max(selection.total, 1e-20);

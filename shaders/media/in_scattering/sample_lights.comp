@@ -91,18 +91,40 @@ float distance_pdf(MediumSegment segment, bool has_place, Equiangular angles, fl
     return has_place ? 0.5 * (pdf + equiangular_pdf(angles, distance)) : pdf;
 }
 
+// Whether the ray by which a path goes on meets the environment as well: the media scatter the path.
+bool meets_environment(CameraPath path) {
+#ifdef PORTALS
+    return false;
+#else
+    return path.medium_passing < 1.0;
+#endif
+}
+
 // MIS weight of a shadow ray to the environment, which a path that the media scatter meets as well; pdf: of the shadow
 // ray among those to the environment, 1/sr.
-float world_mis_weight(CameraPath path, Ray ray, float distance, vec3 scattered, Light light, float pdf) {
-#ifndef PORTALS
-    if (path.medium_passing < 1.0) {
-        vec3 scattering = path_medium(path.flags, PlaceOnRay(ray.origin, ray.direction, distance)).scattering;
-        float phase_pdf = dot(scattered, vec3(1.0)) / max(dot(scattering, vec3(1.0)), 1e-30);
-        return power_heuristic(pdf * light.selection_probability, phase_pdf);
-    }
-#endif
-    return 1.0;
+float world_mis_weight(CameraPath path, PlaceOnRay at, vec3 scattered, Light light, float pdf) {
+    if (!meets_environment(path)) return 1.0;
+    vec3 scattering = path_medium(path.flags, at).scattering;
+    float phase_pdf = dot(scattered, vec3(1.0)) / max(dot(scattering, vec3(1.0)), 1e-30);
+    return power_heuristic(pdf * light.selection_probability, phase_pdf);
 }
+
+#ifndef PORTALS
+// The same light in a direction of the phase function, for half of the points where the environment is uneven (balance
+// heuristic): no other ray meets it. at: the point. u: chooses the technique, and the direction.
+LightSample sample_world_by_phase(LightSample sampled, CameraPath path, PlaceOnRay at, vec3 u) {
+    bool is_even = environment_is_even();
+    if (is_even || u.x < 0.5) {
+        PhaseFunction phase = sample_path_phase_function(path.flags, at, vec3(1.0), u.y);
+        sampled.direction = direction_around(at.direction, sample_phase_function(phase, u.y), u.z);
+    }
+    float cosine = dot(sampled.direction, at.direction);
+    float phase_pdf = mean_phase(path.flags, at, cosine, path_medium(path.flags, at).scattering);
+    sampled.pdf = is_even ? phase_pdf : 0.5 * (phase_pdf + world_pdf(sampled.direction));
+    sampled.weight = world_radiance(sampled.direction) / max(sampled.pdf, 1e-30);
+    return sampled;
+}
+#endif
 
 void main() {
     uint index = active_path();
@@ -122,7 +144,7 @@ void main() {
          v = scrambled_sobol4(parameters.light_sample, pcg4d(choices));
     float distance = sample_scattered_flight(path.flags, ray, far, segment.thickness, u.xy);
     LightChoice choice = choose_light_at(lit_point(ray.origin + distance * ray.direction),
-                                         chosen_environment_irradiance(ray.origin, false), v.x, v.y);
+                                         chosen_environment_irradiance(ray.origin, meets_environment(path)), v.x, v.y);
     if (!(choice.probability > 0.0)) return;
     Light light = lights[choice.light];
     if (bounces_of(path.depth) > light.max_bounces || (light.flags & RAY_VOLUME_SCATTER) == 0u) return;
@@ -139,11 +161,15 @@ void main() {
     float pdf = distance_pdf(segment, has_place, angles, distance, transmittance);
     vec3 position = ray.origin + distance * ray.direction;
     LightSample sampled = sample_light(light, choice.triangle, position, v.zw);
+    PlaceOnRay at = PlaceOnRay(ray.origin, ray.direction, distance);
+#ifndef PORTALS
+    if (light.kind == LIGHT_WORLD && !meets_environment(path))
+        sampled = sample_world_by_phase(sampled, path, at, vec3(u.w, v.zw));
+#endif
     if (!(pdf > 0.0) || !(largest(sampled.weight) > 0.0)) return;
     if (sampled.triangle != NO_TRIANGLE && (emitter_traits(sampled.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u) return;
-    vec3 scattered = scattered_phase(path.flags, PlaceOnRay(ray.origin, ray.direction, distance),
-                                     dot(sampled.direction, ray.direction));
-    if (light.kind == LIGHT_WORLD) scattered *= world_mis_weight(path, ray, distance, scattered, light, sampled.pdf);
+    vec3 scattered = scattered_phase(path.flags, at, dot(sampled.direction, ray.direction));
+    if (light.kind == LIGHT_WORLD) scattered *= world_mis_weight(path, at, scattered, light, sampled.pdf);
     if (parameters.crosses_media == 0u)
         transmittance *= segment_transmittance(path.flags, position, sampled.direction, sampled.distance);
     shadow_media[index] = path.flags & ~PATH_MASK;

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import scenes
 from boxes import Box
-from support.lobes import Lobe, LobeKind, material
+from support.lobes import Lobe, LobeKind, image_world, material
 
 from rppm_addon.integrator.density_estimation.radii import shrinkage_in
-from rppm_addon.scene import World
+from rppm_addon.scene import Image, World
 from rppm_addon.scene.settings import DirectLight
 
 EYE = (0.5, -4.0, 0.7)
@@ -85,6 +85,40 @@ def test_a_dense_box(mapper):
     """Camera paths are scattered before photons count, so that nearly all of what the kernel misses is behind."""
     scene = furnace(Box(scattering=8.0, g=0.4), photons=8192)
     fog.assert_expected(pictures_of(mapper, scene), 1.0, 0.05, bias=0.02)
+
+
+PATHS = {"photons": 512, "iterations": 4, "volume_bounces": 20}
+"""Settings with which camera paths bring nearly all light of a dense medium."""
+
+
+def test_an_even_world_is_seen_without_noise(mapper):
+    """A path that leaves the medium finds the same light wherever it does: what noise there is comes from the few that
+    are scattered more often than the limit."""
+    found = pictures_of(mapper, furnace(Box(scattering=4.0, g=0.7), **PATHS))
+    print(f"\n{found.mean():.4f} +- {found.std():.4f}")
+    assert found.mean() == pytest.approx(1.0, abs=0.03)
+    assert found.std() < 0.1
+
+
+@pytest.mark.parametrize(("scattering", "volume_bounces"), [(1.5, 0), (4.0, 3)])
+def test_halves_of_a_world_add_up(mapper, scattering, volume_bounces):
+    """Shadow rays to a world with an image leave by the image or by the phase function, and to an even one by the phase
+    function alone: the sum over the upper and the lower half is the even one."""
+    upper = np.zeros((8, 16, 4), np.float32)
+    upper[..., 3] = 1.0
+    lower = upper.copy()
+    upper[4:, :, :3] = lower[:4, :, :3] = 1.0
+    scene = furnace(Box(scattering=scattering, g=0.7), **PATHS | {"iterations": 64, "volume_bounces": volume_bounces})
+    even, halves, scene.world = pictures_of(mapper, scene), [], image_world(0)
+    for half in upper, lower:
+        scene.images = [Image("half", half)]
+        halves.append(pictures_of(mapper, scene))
+    total = np.sum(halves, axis=0)
+    ratio = total.mean(axis=(1, 2, 3)) / even.mean()
+    error = np.hypot(ratio.std(ddof=1), (even.mean(axis=(1, 2, 3)) / even.mean()).std(ddof=1)) / np.sqrt(8.0)
+    print(f"\n{ratio.mean():.4f} +- {error:.4f}, halves {[float(half.mean()) for half in halves]}")
+    assert error < 0.01
+    assert abs(ratio.mean() - 1.0) < 0.005 + 4.0 * error
 
 
 @pytest.mark.parametrize("halves", [(0.8, 0.6, 0.4), (0.99, 0.98)], ids=["deep", "near the surface"])
