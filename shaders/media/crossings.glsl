@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which media a point is in, by the surfaces on the way to it or away from it. The includer declares before the block
-// Attributes, Materials and MediumBoxes.
+// Which media a point is in, by the surfaces on the way to it or away from it. The includer declares before the blocks
+// Attributes and Media, and parameters with boxes.
 #include TRAVERSAL
 #include "common/geometry.glsl"
 #include "materials/medium.glsl"
+#include MEDIUM_HITS "media/one_level/hits.glsl"
 
 // Of surfaces behind one another, those up to here count: llvmpipe ends loops of a thread after 65535 rounds in all.
 const int MOST_CROSSINGS = 64;
@@ -16,10 +17,7 @@ struct Crossing {
     bool leaves;
 };
 
-uint medium_of(uint triangle) {
-    if (is_hit_triangle(triangle)) return 0u;  // instances with a medium are expanded
-    return media[attributes[triangle].material].material_medium;
-}
+uint medium_of(uint triangle) { return media[material_of(triangle)].material_medium; }
 
 Crossing next_crossing(inout Ray ray) {
     for (int count = 0; count < MOST_CROSSINGS; ++count) {
@@ -42,7 +40,7 @@ Crossing next_crossing(inout Ray ray) {
 
 bool may_cross(vec3 low, vec3 high) {
     for (uint k = 0u; k < parameters.box_count; ++k)
-        if (all(lessThanEqual(low, medium_boxes[k].high)) && all(greaterThanEqual(high, medium_boxes[k].low)))
+        if (all(lessThanEqual(low, parameters.boxes[k].high)) && all(greaterThanEqual(high, parameters.boxes[k].low)))
             return true;
     return false;
 }

@@ -18,8 +18,7 @@ uint times_within(vec3 point, EmissiveMedium source, out uint media) {
     for (int count = 0; count < MOST_CROSSINGS; ++count) {
         Crossing crossing = next_crossing(ray);
         if (crossing.medium == 0u) break;
-        bool is_source =
-            crossing.medium == source.medium && attributes[ray.source_triangle].instance == source.instance;
+        bool is_source = crossing.medium == source.medium && instance_of(ray.source_triangle) == source.instance;
         uint without = leave_medium(entered, crossing.medium);
         if (!crossing.leaves) {
             entered = enter_medium(entered, crossing.medium);

@@ -30,7 +30,7 @@ def render(picture: Path) -> dict:
     scene.render.filepath = str(picture)
     bpy.ops.render.render(write_still=True)
     reports = module("blender.reports").reports_of(scene.session_uid)
-    return {"warnings": list(reports.latest.warnings), "samples": reports.latest.iterations}
+    return {"warnings": list(reports.latest.warnings), "samples": reports.latest.progress.iteration}
 
 
 def build_scene() -> None:

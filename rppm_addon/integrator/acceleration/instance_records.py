@@ -65,7 +65,7 @@ def instance_records(instanced: InstancedMeshes, roots: np.ndarray, reach: float
     for row in range(3):
         records[f"to_object{row}"] = inverses[:, row]
         records[f"row{row}"] = entries[f"row{row}"]
-    for name in ("pivot", "set_code"):
+    for name in ("pivot", "set_code", "first_slot", "slot_count"):
         records[name] = entries[name]
     records["first_triangle"] = instanced.mesh_first_triangles[instanced.which[rows]]
     records["root"] = roots

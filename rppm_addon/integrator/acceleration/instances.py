@@ -34,13 +34,16 @@ BOTTOM_LEVEL_INSTANCE = Record(
     mirrored="uint",
     margin="float",
     set_code="float",
+    first_slot="uint",
+    slot_count="uint",
 )
 """An instance of a mesh that has an acceleration structure of its own.
 
 ``to_object``: the rows of its world-to-object matrix. ``row``, ``pivot``: vertices, less the pivot, are placed in the
 world by these rows. ``first_triangle``: of its mesh in object space, in the block Triangles; ``root``: of its mesh's
 structure. ``placement``: its number among all instances. ``margin``: by which boxes of the mesh are widened, in object
-space. ``set_code``: as of triangles (shaders/common/light_sets.glsl).
+space. ``set_code``: as of triangles (shaders/common/light_sets.glsl). ``first_slot``, ``slot_count``: of its materials,
+in the block SlotMaterials.
 """
 StorageBlock("BottomLevelInstances", "BottomLevelInstance bottom_level_instances[];")
 StorageBlock("HitOrigins", "uvec2 hit_origins[];")
@@ -138,7 +141,8 @@ class InstancedMeshes:
     matrices: np.ndarray
     """(n, 4, 4) float64, object to world."""
     entries: np.ndarray
-    """(n,) records with row0, row1, row2, pivot and set_code, as the triangles of expanded instances are placed by."""
+    """(n,) records with row0, row1, row2, pivot, set_code, first_slot and slot_count, as the triangles of expanded
+    instances are placed by."""
     first_materials: np.ndarray
     """(n,) uint32, the material of the first slot of each."""
     boxes: np.ndarray
@@ -162,11 +166,12 @@ class InstancedMeshes:
         return len(self.emitters) > 0
 
     def has_rows_of(self, before: "InstancedMeshes") -> bool:
-        """True where the rows are those of the same instances, with the same meshes at the same places."""
+        """True where the rows are those of the same instances, with the same meshes and slots at the same places."""
         return (
             np.array_equal(self.placements, before.placements)
             and np.array_equal(self.which, before.which)
             and np.array_equal(self.mesh_first_triangles, before.mesh_first_triangles)
+            and all(np.array_equal(self.entries[name], before.entries[name]) for name in ("first_slot", "slot_count"))
         )
 
     def changed_since(self, before: "InstancedMeshes") -> np.ndarray:

@@ -6,8 +6,12 @@ import numpy as np
 from ...scene.meshes import Mesh
 from ..acceleration.acceleration_structure import MARGIN
 from .clustering import NODE
-from .leaves import triangle_nodes
+from .forest import MOST_BOXES
+from .leaves import nodes_of_small_meshes, triangle_nodes
 from .top_level import placed_nodes
+
+TRIANGLES_AT_ONCE = 1 << 17
+"""Triangles of small meshes whose hierarchies are built together."""
 
 _Key = tuple[int, int, int]
 
@@ -25,14 +29,10 @@ class BottomLevels:
 
     def build(self, meshes: list[Mesh]) -> bool:
         """Take the meshes; returns whether any place of any node has changed."""
-        known, self._known = self._known, {}
-        order = []
-        for mesh in meshes:
-            arrays = mesh.positions, mesh.corner_vertices, mesh.triangle_corners
-            key = id(arrays[0]), id(arrays[1]), id(arrays[2])
-            if key not in self._known:
-                self._known[key] = known.get(key) or (arrays, _mesh_nodes(mesh))
-            order.append(key)
+        known, order = self._known, [_key_of(mesh) for mesh in meshes]
+        new = {key: mesh for key, mesh in zip(order, meshes, strict=True) if key not in known}
+        made = dict(zip(new, _nodes_of(list(new.values())), strict=True))
+        self._known = {key: known.get(key) or (_arrays(new[key]), made[key]) for key in order}
         is_new = order != self._order or any(self._known[key] is not known.get(key) for key in order)
         self._order = order
         counts = [len(self._known[key][1]) for key in order]
@@ -49,7 +49,36 @@ class BottomLevels:
         return nodes
 
 
-def _mesh_nodes(mesh: Mesh) -> np.ndarray:
-    vertices = mesh.positions[mesh.corner_vertices[mesh.triangle_corners]].astype(np.float32)
+def _arrays(mesh: Mesh) -> tuple[np.ndarray, ...]:
+    return mesh.positions, mesh.corner_vertices, mesh.triangle_corners
+
+
+def _key_of(mesh: Mesh) -> _Key:
+    positions, vertices, corners = _arrays(mesh)
+    return id(positions), id(vertices), id(corners)
+
+
+def _nodes_of(meshes: list[Mesh]) -> list[np.ndarray]:
+    """NODE records of the hierarchy of each mesh, the root first. Small meshes are built together."""
+    result: list[np.ndarray] = [NODE.zeros(0)] * len(meshes)
+    counts = np.array([mesh.triangle_count for mesh in meshes], np.int64)
+    small = np.flatnonzero(counts <= MOST_BOXES)
+    parts = np.split(small, np.flatnonzero(np.diff(np.cumsum(counts[small]) // TRIANGLES_AT_ONCE)) + 1)
+    for part in (part.tolist() for part in parts if len(part)):
+        vertices, margins = [_vertices(meshes[n]) for n in part], [_margin(meshes[n]) for n in part]
+        for number, nodes in zip(part, nodes_of_small_meshes(vertices, margins), strict=True):
+            result[number] = nodes
+    for number in np.flatnonzero(counts > MOST_BOXES).tolist():
+        result[number] = triangle_nodes(_vertices(meshes[number]), _margin(meshes[number]))
+    return result
+
+
+def _vertices(mesh: Mesh) -> np.ndarray:
+    """(n, 3, 3) float32 of the triangles, meters."""
+    return mesh.positions[mesh.corner_vertices[mesh.triangle_corners]].astype(np.float32)
+
+
+def _margin(mesh: Mesh) -> float:
+    """Margin of the boxes of its hierarchy, meters."""
     finite = np.abs(mesh.positions[np.isfinite(mesh.positions).all(axis=1)])
-    return triangle_nodes(vertices, max(float(finite.max(initial=0.0)), 1e-20) * MARGIN)
+    return max(float(finite.max(initial=0.0)), 1e-20) * MARGIN

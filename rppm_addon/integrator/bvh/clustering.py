@@ -24,9 +24,9 @@ MAX_DEPTH = 64
 
 _REACH = 8
 """Neighbors to either side that a cluster is compared with."""
-_FEW, _REACH_OF_FEW = 2048, 32
+FEW, REACH_OF_FEW = 2048, 32
 """So few clusters are compared with more of their neighbors, as they are the top of the tree, which every ray meets."""
-_BLOCK = 1 << 14
+BLOCK = 1 << 14
 """Clusters that are compared at a time, whose boxes fit into a processor's cache."""
 _MORTON_BITS = 20
 """Per axis."""
@@ -53,7 +53,7 @@ def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.n
             first, second = _next_in_line(count) if is_deep else _mutually_nearest(low, high, workers)
             passes += 1
             made = slice(end - len(first), end)
-            _fill(nodes[made], low, high, children, first, second)
+            fill(nodes[made], low, high, children, first, second)
             children[first] = np.arange(made.start, made.stop, dtype=np.uint32)
             low[:, first] = np.minimum(low[:, first], low[:, second])
             high[:, first] = np.maximum(high[:, first], high[:, second])
@@ -65,7 +65,7 @@ def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.n
     return nodes
 
 
-def _fill(
+def fill(
     nodes: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
@@ -73,6 +73,7 @@ def _fill(
     first: np.ndarray,
     second: np.ndarray,
 ) -> None:
+    """Fill in nodes, as many as there are pairs of clusters: of each the numbers of the ``first`` and ``second``."""
     for side, clusters in enumerate((first, second)):
         nodes[f"low{side}"], nodes[f"high{side}"] = low[:, clusters].T, high[:, clusters].T
         nodes[f"child{side}"] = children[clusters]
@@ -83,7 +84,16 @@ def _morton_codes(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     centers = low + high  # twice the centers
     least = centers.min(axis=1, keepdims=True)
     side = float((centers.max(axis=1, keepdims=True) - least).max())
-    cells = ((centers - least) * np.float32((2**_MORTON_BITS - 1) / max(side, 1e-30))).astype(np.uint64)
+    return interleaved(((centers - least) * np.float32(cells_of_side(side))).astype(np.uint64))
+
+
+def cells_of_side(side: float) -> float:
+    """Cells of a Morton curve in a meter, of a cube with a side of so many meters."""
+    return (2**_MORTON_BITS - 1) / max(side, 1e-30)
+
+
+def interleaved(cells: np.ndarray) -> np.ndarray:
+    """(n,) uint64: the places along a Morton curve of cells (3, n) uint64, by their numbers along each axis."""
     codes = np.zeros(cells.shape[1], np.uint64)
     for axis, cell in enumerate(cells):
         for shift, mask in (
@@ -110,12 +120,12 @@ def _mutually_nearest(
     """Pairs of clusters each of which shares the box of the least area with the other: the numbers of the first and
     of the second ones. There is one at least."""
     count = low.shape[1]
-    if count <= _FEW:
-        partners = _partners_of_few(low, high, min(_REACH_OF_FEW, count - 1))
+    if count <= FEW:
+        partners = _partners_of_few(low, high, min(REACH_OF_FEW, count - 1))
     else:
         partners = np.empty(count, np.int32)
-        of_block = functools.partial(_find_partners, low, high, min(_REACH, count - 1), partners)
-        list(workers.map(of_block, range(0, count, _BLOCK)))
+        of_block = functools.partial(find_partners, low, high, min(_REACH, count - 1), partners)
+        list(workers.map(of_block, range(0, count, BLOCK)))
     numbers = np.arange(count, dtype=np.int32)
     first = np.flatnonzero((partners[partners] == numbers) & (numbers < partners))
     # Areas beyond the range of floats are equal to none.
@@ -123,7 +133,7 @@ def _mutually_nearest(
 
 
 def _partners_of_few(low: np.ndarray, high: np.ndarray, reach: int) -> np.ndarray:
-    """(n,) what _find_partners finds, for all distances at once: few clusters take no longer than a call of NumPy."""
+    """(n,) what find_partners finds, for all distances at once: few clusters take no longer than a call of NumPy."""
     count = low.shape[1]
     numbers, distances = np.arange(count), np.arange(1, reach + 1)[:, None]
     behind = numbers + distances
@@ -135,7 +145,7 @@ def _partners_of_few(low: np.ndarray, high: np.ndarray, reach: int) -> np.ndarra
         )
         areas = (y + z) * x + y * z
     areas[~exists | np.isnan(areas)] = np.inf
-    # Of each distance the cluster behind and that before, in the order in which _find_partners looks at them.
+    # Of each distance the cluster behind and that before, in the order in which find_partners looks at them.
     candidates = np.full((reach, 2, count), np.inf, np.float32)
     candidates[:, 0] = areas
     for distance in range(1, reach + 1):
@@ -150,14 +160,27 @@ def _partners_of_few(low: np.ndarray, high: np.ndarray, reach: int) -> np.ndarra
     return np.where(has_any, partners, numbers).astype(np.int32)
 
 
-def _find_partners(low: np.ndarray, high: np.ndarray, reach: int, partners: np.ndarray, begin: int) -> None:
+def find_partners(
+    low: np.ndarray,
+    high: np.ndarray,
+    reach: int,
+    partners: np.ndarray,
+    begin: int,
+    trees: np.ndarray | None = None,
+    starts: np.ndarray | None = None,
+) -> None:
     """Fill in the partners of a block of clusters: of each the neighbor, among ``reach`` to either side, with which it
-    shares the box of the least area. Of equal areas all clusters prefer the same pair, lest none find each other."""
-    end = min(begin + _BLOCK, len(partners))
+    shares the box of the least area. Of equal areas all clusters prefer the same pair, lest none find each other.
+
+    trees: (n,) int32, the tree of each cluster, of which only those of the same are neighbors, and ``starts``, (n,)
+    int32, the first cluster of that tree; None where all are of one.
+    """
+    end = min(begin + BLOCK, len(partners))
     first, last = max(begin - reach, 0), min(end + reach, len(partners))
     low, high = low[:, first:last], high[:, first:last]
     count = last - first
     numbers = np.arange(first, last, dtype=np.int32)
+    places = numbers if starts is None else numbers - starts[first:last]
     least, nearest = np.full(count, np.inf, np.float32), numbers.copy()
     sizes, lows = np.empty((3, count), np.float32), np.empty((3, count), np.float32)
     areas, is_nearer = np.empty(count, np.float32), np.empty(count, bool)
@@ -177,8 +200,11 @@ def _find_partners(low: np.ndarray, high: np.ndarray, reach: int, partners: np.n
             area *= size[0]
             size[1] *= size[2]
             area += size[1]
+            if trees is not None:
+                are_apart = trees[first : last - distance] != trees[first + distance : last]
+                np.copyto(area, np.float32(np.inf), where=are_apart)
             # In a row of equal boxes every other pair comes first, so that all find a partner at once.
-            comes_first = (numbers[before] // distance) & 1 == 0
+            comes_first = (places[before] // distance) & 1 == 0
             np.less(area, least[before], out=nearer)
             nearer &= comes_first
             take(before, behind, area, nearer)

@@ -4,6 +4,7 @@
 import numpy as np
 
 from .clustering import NODE, build_nodes
+from .forest import build_forest
 
 LEAF = 0x80000000
 """Bit of a child that is a leaf: a number from bit 2 on, and below that the number of triangles from there on."""
@@ -21,12 +22,42 @@ def triangle_nodes(vertices: np.ndarray, margin: float) -> np.ndarray:
     return box_nodes(_leaves(vertices), margin)
 
 
+def nodes_of_small_meshes(meshes: list[np.ndarray], margins: list[float]) -> list[np.ndarray]:
+    """Hierarchies as triangle_nodes makes them, of the vertices of each mesh and its margin, built together.
+
+    Meshes have no more than MOST_BOXES triangles. The larger of them may have another tree than triangle_nodes gives
+    them, as more neighbors are compared.
+    """
+    # Two triangles that share a leaf are of the same mesh.
+    padded = [np.concatenate([v, np.full((len(v) % 2, 3, 3), np.nan, np.float32)]) for v in meshes]
+    ends = np.cumsum([len(vertices) for vertices in padded])
+    low, high, leaves = _leaves(np.concatenate(padded))
+    owners = np.searchsorted(ends, (leaves & ~np.uint32(LEAF)) >> np.uint32(2), side="right")
+    leaves -= np.concatenate([[0], ends])[owners].astype(np.uint32) << np.uint32(2)
+    widths = np.array(margins, np.float32)[owners]
+    low, high = low - widths, high + widths
+    counts = np.bincount(owners, minlength=len(meshes))
+    are_trees = counts > 1
+    chosen = np.flatnonzero(are_trees[owners])
+    trees = iter(build_forest(low[:, chosen], high[:, chosen], leaves[chosen], counts[are_trees]))
+    firsts = np.cumsum(counts) - counts
+    return [
+        next(trees) if is_tree else _root(low[:, first:end], high[:, first:end], leaves[first:end])
+        for first, end, is_tree in zip(firsts, firsts + counts, are_trees, strict=True)
+    ]
+
+
 def box_nodes(boxes: Boxes, margin: float) -> np.ndarray:
     """NODE records of a hierarchy of boxes, the root first. margin: as that of triangle_nodes."""
     low, high, leaves = boxes
     low, high = low - np.float32(margin), high + np.float32(margin)
     if len(leaves) > 1:
         return build_nodes(low, high, leaves)
+    return _root(low, high, leaves)
+
+
+def _root(low: np.ndarray, high: np.ndarray, leaves: np.ndarray) -> np.ndarray:
+    """The only node of a hierarchy of one box or none."""
     root = NODE.zeros(1)
     root["child0"] = root["child1"] = EMPTY_LEAF
     if len(leaves):

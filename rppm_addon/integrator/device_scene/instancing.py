@@ -97,8 +97,8 @@ def instanced_members(
 ) -> np.ndarray | None:
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
-    These are instances of meshes that occur more than once, or that move or bend, but for one that is baked; their
-    materials fill the inside with no medium. Those that emit light are such of meshes that occur more than once, and
+    These are instances of meshes that occur more than once, or that move or bend, but for one that is baked and for
+    grids of volumes. Those that emit light are such of meshes that occur more than once, and
     keep their shape while the shutter is open, with materials that emit the same from all, without Light Linking, in
     scenes without media and shadow catchers. columns: of the scene's instances, at any moment; moved:
     MovedInstances.follow. is_software: whether the processor stands in for a GPU.
@@ -128,7 +128,6 @@ def instanced_members(
 def _may_be_instanced(scene: Scene, columns: InstanceColumns, glowing: set[int]) -> np.ndarray:
     """(instances,) bool. glowing: the materials that emit light."""
     excluded = {number for number in glowing if not emits_alike(scene.materials[number].graph)}
-    excluded |= {number for number, material in enumerate(scene.materials) if material.interior is not None}
     whole = np.array([mesh.volume is None for mesh in scene.meshes], bool)
     result = whole[columns.meshes] & ~columns.have(excluded)
     if scene.camera.texels is not None:  # which know the triangles of what is baked by number

@@ -24,14 +24,18 @@ from ..surfaces.placements import placed_boxes
 
 MEDIUM_BOX = Record("MediumBox", low="vec3", unused0="uint", high="vec3", unused1="uint")
 """Lowest and highest coordinates of surfaces with a medium inside, meters."""
-StorageBlock("MediumBoxes", "MediumBox medium_boxes[];")
-StorageBlock("MediaOfSources", "uint media_of_sources[];")
-"""The media at the middle of each light, and at the camera, as paths carry them."""
-Record("FindMediaParameters", camera_position="vec3", box_count="uint")
-Record("EnterMediaParameters", camera_position="vec3", box_count="uint", has_camera="uint")
-
 _MAX_BOXES = 32
 """Boxes that points are looked for in; what is more lies in the last together."""
+StorageBlock("MediaOfSources", "uint media_of_sources[];")
+"""The media at the middle of each light, and at the camera, as paths carry them."""
+Record("FindMediaParameters", camera_position="vec3", box_count="uint", boxes=(MEDIUM_BOX, _MAX_BOXES))
+Record(
+    "EnterMediaParameters",
+    camera_position="vec3",
+    box_count="uint",
+    boxes=(MEDIUM_BOX, _MAX_BOXES),
+    has_camera="uint",
+)
 
 _FLATTEST = 0.25
 """Least extent of the box around what there is in the world's medium, over the largest."""
@@ -46,7 +50,6 @@ class Media(Stage):
     memory_group = "media"
     remedy = "use fewer objects with volumes"
     _of_sources = StorageBuffer("media of lights and the camera", "uint", block="MediaOfSources")
-    _boxes = StorageBuffer("boxes of media", MEDIUM_BOX, block="MediumBoxes")
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
@@ -54,6 +57,7 @@ class Media(Stage):
         self._has_texels = sizes.has_texels
         self._defines = {"MEDIA": 1} | ({"EMISSIVE_MEDIA": 1} if sizes.features.has_emissive_media else {})
         self._scene: Scene | None = None
+        self._boxes = MEDIUM_BOX.zeros(_MAX_BOXES)
         self._box_count = 0
         self.volume = 0.0
         """Volume in which media lie, m^3: that of the boxes around them, or of the scene."""
@@ -90,25 +94,27 @@ class Media(Stage):
             self._find(context, boxes)
 
     def _find(self, context: StageContext, boxes: np.ndarray) -> None:
-        records = MEDIUM_BOX.zeros(len(boxes))
-        records["low"], records["high"] = boxes[:, 0], boxes[:, 1]
-        self._boxes.upload(records)
+        self._boxes["low"][: len(boxes)], self._boxes["high"][: len(boxes)] = boxes[:, 0], boxes[:, 1]
         lights = len(context.lights.table)
         self._of_sources.require_items(lights + 1)
         program = self._compile("media/find.comp", context)
-        program.run(lights + 1, {**context.blocks, **self.blocks}, self._parameters(context))
+        program.run(lights + 1, {**self._inputs(context), **self.blocks}, self._parameters(context))
 
     def _enter(self, context: StageContext, active: ActivePaths, blocks: dict[str, Bindable], kernel: str) -> None:
         program = self._compile(kernel, context)
         parameters = {**self._parameters(context), "has_camera": not self._has_texels}
-        active.run(program, {**context.blocks, **self.blocks, **blocks}, parameters)
+        active.run(program, {**self._inputs(context), **self.blocks, **blocks}, parameters)
+
+    def _inputs(self, context: StageContext) -> dict[str, Bindable]:
+        return {**context.blocks, **context.geometry.mesh_blocks}
 
     def _compile(self, kernel: str, context: StageContext) -> ComputeProgram:
-        return self._library.compute(kernel, context.acceleration.lean_traversal_defines | self._defines)
+        hits = {"MEDIUM_HITS": "media/two_levels"} if context.acceleration.has_instances else {}
+        return self._library.compute(kernel, context.acceleration.lean_traversal_defines | self._defines | hits)
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
         position = tuple(map(float, context.scene.camera.matrix[:3, 3]))
-        return {"camera_position": position, "box_count": self._box_count}
+        return {"camera_position": position, "box_count": self._box_count, "boxes": self._boxes}
 
 
 def _volume(context: StageContext, boxes: np.ndarray) -> float:

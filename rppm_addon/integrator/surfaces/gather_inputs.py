@@ -29,6 +29,9 @@ INSTANCE_ENTRY = Record(
     set_code="float",
 )
 StorageBlock("Instances", "InstanceEntry instances[];")
+StorageBlock("TriangleSlots", "uint triangle_slots[];")
+StorageBlock("SlotMaterials", "uint slot_materials[];")
+"""Slots of the triangles of meshes, and materials of the slots of instances, from InstanceEntry.first_slot on."""
 StorageBlock("CornerNormals", "float corner_normals[];")
 StorageBlock("CornerVertices", "uint corner_vertices[];")
 StorageBlock("TriangleCorners", "uint triangle_corners[];")

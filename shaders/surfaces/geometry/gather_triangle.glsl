@@ -5,8 +5,8 @@
 #include "surfaces/geometry/mesh_arrays.glsl"
 
 readonly buffer CornerUvs { vec2 corner_uvs[]; };
-readonly buffer TriangleSlots { uint triangle_slots[]; };
-readonly buffer SlotMaterials { uint slot_materials[]; };
+readonly buffer TriangleSlots;
+readonly buffer SlotMaterials;
 writeonly buffer Attributes;
 
 #include <MeshArrays>

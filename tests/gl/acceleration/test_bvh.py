@@ -10,6 +10,7 @@ import scenes
 from deep_cubemap_rays import KINDS, make_rays
 from deep_cubemap_scenes import PLAIN, bits, room_with_meshes
 from moving_scenes import everything_moves, films_of_moved
+from support.acceleration.hierarchies import HARD, assert_boxes_enclose, depth_of, leaves_of
 
 from rppm_addon.gl.context.context import Context
 from rppm_addon.integrator.bvh import bvh, clustering, leaves
@@ -29,39 +30,6 @@ def test_hits_equal_those_of_a_deep_cubemap(context, library):
         for kind in KINDS:
             rays = ray_records(*make_rays(kind, 50_000, PLAIN, seed=6))
             np.testing.assert_array_equal(bits(scene.trace(rays)), bits(cubemap.trace(rays)))
-
-
-def depth_of(nodes: np.ndarray) -> int:
-    """Nodes between the root and the deepest leaf; each node has a lower number than its children."""
-    depths = np.ones(len(nodes), int)
-    for number, node in enumerate(nodes):
-        for child in (node["child0"], node["child1"]):
-            if child < leaves.LEAF:
-                assert child > number
-                depths[child] = depths[number] + 1
-    return int(depths.max())
-
-
-def leaves_of(nodes: np.ndarray) -> np.ndarray:
-    children = np.concatenate([nodes["child0"], nodes["child1"]])
-    return np.sort(children[children >= leaves.LEAF])
-
-
-def assert_boxes_enclose(nodes: np.ndarray) -> None:
-    for side in "01":
-        for box in nodes[nodes[f"child{side}"] < leaves.LEAF]:
-            inner = nodes[box[f"child{side}"]]
-            np.testing.assert_array_equal(box[f"low{side}"], np.minimum(inner["low0"], inner["low1"]))
-            np.testing.assert_array_equal(box[f"high{side}"], np.maximum(inner["high0"], inner["high1"]))
-
-
-HARD = {
-    "all in one place": lambda rng, count: np.zeros((3, count)),
-    "in a row": lambda rng, count: np.arange(count) * np.array([[1.0], [0.0], [0.0]]),
-    "ever smaller": lambda rng, count: 2.0 ** -(np.arange(count) % 120) * np.ones((3, 1)),
-    "anywhere": lambda rng, count: rng.normal(size=(3, count)),
-    "far beyond squares of floats": lambda rng, count: rng.normal(size=(3, count)) * 1e30,
-}
 
 
 @pytest.mark.parametrize("place", HARD)

@@ -27,6 +27,7 @@ from rppm_addon.scene import (
 from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
+from rppm_addon.scene.volumes import Volume
 from rppm_addon.self_test.meshes import placed, rectangle, sphere
 
 PLAIN, GLOWING, FILLED = range(3)
@@ -65,9 +66,14 @@ def test_meshes_that_occur_more_than_once():
     assert members_of(scene_of(*BALLS, (1, PLAIN), **TWO_LEVELS)) == [0, 1, 2]
 
 
-def test_what_is_filled_is_expanded():
-    assert members_of(scene_of((0, PLAIN), (0, FILLED), (0, PLAIN), **TWO_LEVELS)) == [0, 2]
-    assert members_of(scene_of((0, PLAIN), (0, FILLED), **TWO_LEVELS)) == []
+def test_what_is_filled_shares_its_triangles():
+    assert members_of(scene_of((0, PLAIN), (0, FILLED), (0, FILLED), (1, PLAIN), **TWO_LEVELS)) == [0, 1, 2]
+
+
+def test_boxes_of_grids_are_expanded():
+    scene = scene_of(*[(0, FILLED)] * 2, *[(1, PLAIN)] * 2, **TWO_LEVELS)
+    scene.meshes[0] = dataclasses.replace(scene.meshes[0], volume=Volume())
+    assert members_of(scene) == [2, 3]
 
 
 GLOWING_BALLS = [(0, GLOWING)] * 3
