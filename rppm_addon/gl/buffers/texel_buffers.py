@@ -59,7 +59,17 @@ class TexelBuffers:
     """Binds the texel buffers of a program, by their names."""
 
     def __init__(self, context: Context, buffers: Mapping[str, TexelBuffer]) -> None:
-        self._buffers = dict(buffers)
+        self._images = [
+            image
+            for name, buffer in buffers.items()
+            for image in (
+                (buffer.unit, name, buffer.access, buffer.format),
+                (buffer.words_unit, name, WRITE_ONLY, FORMATS["r32ui"]),
+            )
+            if image[0] is not None
+        ]
+        """Unit, name, access and format of each."""
+        self._points = context.binding_points
         unsigned, integer = ctypes.c_uint, ctypes.c_int
         self._generate = context.function("glGenTextures", None, integer, ctypes.POINTER(unsigned))
         self._bind = context.function("glBindTexture", None, unsigned, unsigned)
@@ -70,24 +80,26 @@ class TexelBuffers:
 
     def bind(self, contents: Mapping[str, moderngl.Buffer]) -> None:
         """Have each buffer at its unit."""
-        for name, buffer in self._buffers.items():
-            texture = self._texture(contents[name], buffer.format)
-            self._bind_image(buffer.unit, texture, 0, 0, 0, buffer.access, buffer.format)
-            if buffer.words_unit is not None:
-                words = FORMATS["r32ui"]
-                texture = self._texture(contents[name], words)
-                self._bind_image(buffer.words_unit, texture, 0, 0, 0, WRITE_ONLY, words)
+        bound = self._points.images
+        for unit, name, access, number in self._images:
+            image = self._texture(contents[name], number), access
+            if bound.get(unit) != image:
+                self._bind_image(unit, image[0], 0, 0, 0, access, number)
+                bound[unit] = image
 
     def _texture(self, contents: moderngl.Buffer, number: int) -> int:
         """A buffer's texture of a format, made when it is first asked for."""
-        textures = contents.extra = contents.extra or {}
-        if number not in textures:
+        textures = contents.extra
+        if textures is None:
+            textures = contents.extra = {}
+        texture = textures.get(number)
+        if texture is None:
             made = ctypes.c_uint(0)
             self._generate(1, ctypes.byref(made))
             self._bind(_TEXTURE_BUFFER, made.value)
             self._attach(_TEXTURE_BUFFER, number, contents.glo)
-            textures[number] = made.value
-        return textures[number]
+            texture = textures[number] = made.value
+        return texture
 
 
 def release_textures(context: Context, contents: moderngl.Buffer) -> None:
@@ -97,3 +109,4 @@ def release_textures(context: Context, contents: moderngl.Buffer) -> None:
         delete = context.function("glDeleteTextures", None, ctypes.c_int, ctypes.POINTER(ctypes.c_uint))
         delete(len(textures), (ctypes.c_uint * len(textures))(*textures))
         contents.extra = None
+        context.binding_points.images.clear()
