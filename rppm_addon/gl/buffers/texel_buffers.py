@@ -59,16 +59,12 @@ class TexelBuffers:
     """Binds the texel buffers of a program, by their names."""
 
     def __init__(self, context: Context, buffers: Mapping[str, TexelBuffer]) -> None:
-        self._images = [
-            image
-            for name, buffer in buffers.items()
-            for image in (
-                (buffer.unit, name, buffer.access, buffer.format),
-                (buffer.words_unit, name, WRITE_ONLY, FORMATS["r32ui"]),
-            )
-            if image[0] is not None
-        ]
+        self._images: list[tuple[int, str, int, int]] = []
         """Unit, name, access and format of each."""
+        for name, buffer in buffers.items():
+            self._images.append((buffer.unit, name, buffer.access, buffer.format))
+            if buffer.words_unit is not None:
+                self._images.append((buffer.words_unit, name, WRITE_ONLY, FORMATS["r32ui"]))
         self._points = context.binding_points
         unsigned, integer = ctypes.c_uint, ctypes.c_int
         self._generate = context.function("glGenTextures", None, integer, ctypes.POINTER(unsigned))
