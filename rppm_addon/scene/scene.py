@@ -53,8 +53,6 @@ class Scene:
     """Where things are in the frames before (time 0) and after (1), for the pass Vector; its curve says nothing."""
     instance_arrays: list[InstanceArray] = field(default_factory=list)
     """Further instances, each array with many of one mesh. The renderer takes scenes without arrays."""
-    lacks_images: bool = False
-    """True where large images are still being read and gray stands in: for a first look, not to be rendered."""
     asset_names: dict[str, str] = field(default_factory=dict)
     """Names of topmost parents, by the names of the objects that have one; only where CryptoAsset is rendered."""
     stamps: dict[str, str] = field(default_factory=dict)

@@ -62,16 +62,10 @@ class Viewport:
             self._fail(unforeseen(error, "see the system console"))
             return
         if not is_complete:
-            if self._scene is None and self._export.sketch is not None:
-                self._show_exported(context, depsgraph, self._export.sketch)
-                self._changed_at = 0.0  # what follows is no navigation
             self.engine.tag_update()
             return
         self._error = ""
-        self._show_exported(context, depsgraph, self._export.scene)
-
-    def _show_exported(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph, exported: Scene) -> None:
-        scene = _lit(context, depsgraph, exported)
+        scene = _lit(context, depsgraph, self._export.scene)
         self._show(context, replace(scene, settings=_settings(context, depsgraph)))
 
     def draw(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:

@@ -29,11 +29,6 @@ class ViewportExport:
         """The scene that was exported last; None before the first export is complete."""
         return self._sync.scene
 
-    @property
-    def sketch(self) -> Scene | None:
-        """The first scene but for large images, which are still being read; None without, and once it is complete."""
-        return None if self.scene is not None else self._sync.sketch
-
     def advance(self, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> bool:
         """Export a slice of what the depsgraph has changed. Returns whether ``scene`` is up to date.
 

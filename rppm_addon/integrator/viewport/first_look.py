@@ -105,7 +105,6 @@ class FirstLook(BufferSet):
             and same_members(scene.meshes, before.meshes)
             and same_members(scene.instances, before.instances)
             and same_members(scene.materials, before.materials)
-            and same_members(scene.images, before.images)
         )
 
     def draw(self, scene: Scene) -> np.ndarray:

@@ -31,7 +31,7 @@ UNSEEN = frozenset(
 iteration finds."""
 AFTER_FILM = frozenset({"denoising_prefilter", "denoising_quality", "denoising_use_gpu"})
 """Settings that say what becomes of a picture once all iterations are in it."""
-_NOT_RENDERED = frozenset({"settings", "stamps", "warnings", "instance_arrays", "lacks_images"})
+_NOT_RENDERED = frozenset({"settings", "stamps", "warnings", "instance_arrays"})
 
 
 def scene_digests(scene: Scene) -> dict[str, str]:

@@ -86,12 +86,7 @@ class ViewportRenderer:
             self._library.on_start = None
 
     def _render(self, request: ViewRequest) -> Iterator[None]:
-        """Render a scene at ascending resolutions; one without its large images is looked at only."""
-        if request.scene.lacks_images:
-            self.mapper = self.mapper or ProgressivePhotonMapper(self._context, self._library)
-            self._presenter.present_first_look(request.scene, request.generation, self.mapper)
-            self._scheduler.cancel()
-            return
+        """Render a scene at ascending resolutions."""
         self._reproject(request)
         for level in self._scheduler.resolution_levels(request):
             yield from self._render_level(request, level)

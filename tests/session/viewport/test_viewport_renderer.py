@@ -71,19 +71,6 @@ def test_a_first_look_comes_before_anything_is_compiled(open_viewport):
     assert compiled(sent) == sorted(compiled(sent)) and 0.0 < compiled(sent)[-1] < 1.0
 
 
-def test_a_scene_without_its_images_is_looked_at_only(open_viewport):
-    whole = scene_of()
-    _, expected = open_viewport(whole)
-    viewport, sent = open_viewport()
-    viewport.show(dataclasses.replace(whole, lacks_images=True), 1, False)
-    viewport.run_slice()
-    assert sent.shown == [(1, 0.0)] and not viewport.busy
-    viewport.show(whole, 2, False)
-    run_to_the_end(viewport)
-    assert sent.shown[-1] == (2, 1.0)
-    np.testing.assert_array_equal(sent.picture, expected.picture)
-
-
 def test_there_is_none_once_there_was_a_frame(open_viewport):
     viewport, sent = open_viewport(scene_of())
     seen = len(sent.frames)

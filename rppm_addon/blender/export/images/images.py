@@ -73,15 +73,6 @@ class ImageTable:
         """Go on with the large images as far as no thread is to be waited for. May raise Unfinished."""
         self._read_late(waits=False)
 
-    @property
-    def are_late(self) -> bool:
-        """Whether large images are still being read."""
-        return bool(self._late)
-
-    def sketched(self) -> list[Image]:
-        """All images, with gray in the place of those that are still being read."""
-        return [_GRAY if index in self._late else image for index, image in enumerate(self.images)]
-
     def finish(self) -> None:
         """Have all images whole. Raises Unfinished when the slice is over."""
         self._read_late(waits=True)
@@ -260,7 +251,6 @@ MISSING = -1
 """Stands for an image without pixels; it is magenta."""
 _NOT_YET = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")
 """Magenta, in the place of a large image until that is read, and where Blender has lost its pixels meanwhile."""
-_GRAY = Image("gray", np.array([[[128, 128, 128, 255]]], np.uint8), "LINEAR")
 
 
 def frame_of(user: bpy.types.ImageUser, scene_frame: int) -> int:

@@ -42,8 +42,6 @@ class SceneSync:
         self._make_report = make_report
         self.scene: Scene | None = None
         """The newest, None before the first update. Scenes that were handed out are not changed."""
-        self.sketch: Scene | None = None
-        """First scene of a viewport but for its large images, which lacks_images says; None where it has none."""
         self._overrides: tuple[object, ...] = ()
         """Effects of the view layer on the scene (overrides_of), the texture limit and the curve settings."""
         self._begin()
@@ -165,14 +163,10 @@ class SceneSync:
         self._objects.renew_materials(depsgraph, edits, self._pending)
         world, suns = self._world.update(depsgraph)
         placed = self._objects.update(depsgraph, edits, self._pending, shown)
+        context.images.finish()
         settings = export_settings(source, depsgraph.view_layer, self._viewport)
         settings.validate()
         new = Scene(camera=camera, settings=settings, world=world)
-        if self._viewport and self.scene is None and self.sketch is None and context.images.are_late:
-            fill_scene(new, depsgraph, context, self._objects.exporter, placed, suns)
-            self.sketch = dataclasses.replace(new, images=context.images.sketched(), lacks_images=True)
-            raise Unfinished
-        context.images.finish()
         fill_scene(new, depsgraph, context, self._objects.exporter, placed, suns)
         if self._viewport:
             _keep_view_of_dicing(self.scene, new)

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exports in slices, between which Blender stays responsive, give what is exported at once."""
 
-import operator
 import time
 
 import bpy
 import edits
 import numpy as np
 import pytest
-from blender_scenes import CAMERA, add_mesh, add_object, depsgraph, following, new_image
+from blender_scenes import CAMERA, add_object, depsgraph, following, new_image
 from edits import EDITS, do, fresh, same
 from node_trees import add_node
 
@@ -94,27 +93,6 @@ def test_slices_give_what_is_exported_at_once(edited, scene):
     sync = SceneSync()
     assert finish(sync) > 10
     assert same(sync.scene, whole) and equal(sync.scene.images, whole.images)
-
-
-def test_a_first_scene_is_there_before_its_large_images(scene):
-    image = new_image("Large", np.full((2048, 2048, 4), 0.25, np.float32))
-    material = bpy.data.materials.new("Textured")
-    material.use_nodes = True
-    node = add_node(material.node_tree, "ShaderNodeTexImage", image=image)
-    principled = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
-    material.node_tree.links.new(node.outputs["Color"], principled.inputs["Base Color"])
-    add_mesh(scene, material=material)
-    bpy.context.view_layer.update()
-    sync = SceneSync()
-    while advance(sync, depsgraph()) is not None and sync.sketch is None:
-        pass
-    sketch = sync.sketch
-    assert sync.scene is None and sketch.lacks_images
-    assert [image.pixels.shape for image in sketch.images] == [(1, 1, 4)]
-    finish(sync)
-    assert not sync.scene.lacks_images and equal(sync.scene.images, fresh().images)
-    for name in ("meshes", "instances", "materials"):
-        assert all(map(operator.is_, getattr(sketch, name), getattr(sync.scene, name)))
 
 
 def test_many_new_objects_are_exported_in_slices(edited):
