@@ -59,13 +59,7 @@ class TexelBuffers:
     """Binds the texel buffers of a program, by their names."""
 
     def __init__(self, context: Context, buffers: Mapping[str, TexelBuffer]) -> None:
-        self._images: list[tuple[int, str, int, int]] = []
-        """Unit, name, access and format of each."""
-        for name, buffer in buffers.items():
-            self._images.append((buffer.unit, name, buffer.access, buffer.format))
-            if buffer.words_unit is not None:
-                self._images.append((buffer.words_unit, name, WRITE_ONLY, FORMATS["r32ui"]))
-        self._points = context.binding_points
+        self._buffers = dict(buffers)
         unsigned, integer = ctypes.c_uint, ctypes.c_int
         self._generate = context.function("glGenTextures", None, integer, ctypes.POINTER(unsigned))
         self._bind = context.function("glBindTexture", None, unsigned, unsigned)
@@ -76,26 +70,24 @@ class TexelBuffers:
 
     def bind(self, contents: Mapping[str, moderngl.Buffer]) -> None:
         """Have each buffer at its unit."""
-        bound = self._points.images
-        for unit, name, access, number in self._images:
-            image = self._texture(contents[name], number), access
-            if bound.get(unit) != image:
-                self._bind_image(unit, image[0], 0, 0, 0, access, number)
-                bound[unit] = image
+        for name, buffer in self._buffers.items():
+            texture = self._texture(contents[name], buffer.format)
+            self._bind_image(buffer.unit, texture, 0, 0, 0, buffer.access, buffer.format)
+            if buffer.words_unit is not None:
+                words = FORMATS["r32ui"]
+                texture = self._texture(contents[name], words)
+                self._bind_image(buffer.words_unit, texture, 0, 0, 0, WRITE_ONLY, words)
 
     def _texture(self, contents: moderngl.Buffer, number: int) -> int:
         """A buffer's texture of a format, made when it is first asked for."""
-        textures = contents.extra
-        if textures is None:
-            textures = contents.extra = {}
-        texture = textures.get(number)
-        if texture is None:
+        textures = contents.extra = contents.extra or {}
+        if number not in textures:
             made = ctypes.c_uint(0)
             self._generate(1, ctypes.byref(made))
             self._bind(_TEXTURE_BUFFER, made.value)
             self._attach(_TEXTURE_BUFFER, number, contents.glo)
-            texture = textures[number] = made.value
-        return texture
+            textures[number] = made.value
+        return textures[number]
 
 
 def release_textures(context: Context, contents: moderngl.Buffer) -> None:
@@ -105,4 +97,3 @@ def release_textures(context: Context, contents: moderngl.Buffer) -> None:
         delete = context.function("glDeleteTextures", None, ctypes.c_int, ctypes.POINTER(ctypes.c_uint))
         delete(len(textures), (ctypes.c_uint * len(textures))(*textures))
         contents.extra = None
-        context.binding_points.images.clear()

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from ...scene.errors import DeviceError
-from .binding_points import BindingPoints
 from .devices import Choice, Device, choose, list_devices
 from .driver_errors import OUT_OF_MEMORY, DriverErrors
 from .kernel_devices import DeviceKind
@@ -95,7 +94,6 @@ class Context:
         self.moderngl = gl
         self.information = information
         self.limits = information.limits
-        self.binding_points = BindingPoints()
         self.large_buffers = 0
         """Buffers of now that are larger than a storage block may be, or texel buffers of one word each."""
 

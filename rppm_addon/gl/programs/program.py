@@ -12,11 +12,11 @@ import moderngl
 from ...scene.errors import DeviceError
 from ..buffers.buffers import BufferRange
 from ..buffers.constants import Constants
+from ..buffers.records import Record
 from ..buffers.texel_buffers import IMAGES_FOR_LARGE, MAX_ADDED, TexelBuffers
 from ..context.context import Context
 from ..context.pacing import Pace, Pacing
-from .bindings import ITERATION, UNIFORM_BINDINGS
-from .parameter_block import ParameterBlock
+from .bindings import ITERATION, PARAMETERS, UNIFORM_BINDINGS
 from .program_maker import ProgramMaker
 from .sources import Source
 
@@ -52,11 +52,11 @@ class Program:
         self.sources = sources
         self._bindings: dict[str, int] = {}
         self._textures: dict[str, int] = {}
-        record = None
+        self.record: Record | None = None
         for source in sources:
             self._bindings |= source.blocks
             self._textures |= source.textures
-            record = record or source.parameters
+            self.record = self.record or source.parameters
         uniform_blocks = {ITERATION} if any(source.reads_iteration for source in sources) else set()
         self.with_large: Callable[[frozenset[str]], Any] | None = None
         """The program that reads the blocks of these names as texels, as far as it can."""
@@ -65,7 +65,7 @@ class Program:
         self._texel_buffers = TexelBuffers(context, texel_buffers) if texel_buffers else None
         self.blocks = frozenset(self._bindings) | self._textures.keys() | texel_buffers.keys() | uniform_blocks
         """Names of the storage blocks, textures and shared uniform blocks that it reads and writes."""
-        self._parameters = ParameterBlock(context, record) if record else None
+        self._parameters = context.moderngl.buffer(reserve=self.record.size) if self.record else None
 
     def _for_large(self, buffers: Mapping[str, Any]) -> Any:
         """The program that is to be run in place of this one, as blocks are too large for it; None if none is.
@@ -95,22 +95,21 @@ class Program:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
-        points = self.context.binding_points
-        try:
-            points.bind_storage(self._bindings, buffers)
-            for sampler, unit in self._textures.items():
-                buffers[sampler].use(unit)
-            if ITERATION in self.blocks:
-                points.bind_uniform(UNIFORM_BINDINGS[ITERATION], buffers[ITERATION])
-            if self._texel_buffers is not None:
-                self._texel_buffers.bind(buffers)
-        except KeyError:
-            missing = sorted(self.blocks - buffers.keys())
+        if missing := self.blocks - buffers.keys():
             raise ValueError(
-                f"{self.name}: buffers missing {missing}; pass the blocks of the StageContext and of the stage"
-            ) from None
-        if self._parameters is not None:
-            self._parameters.bind(parameters or {})
+                f"{self.name}: buffers missing {sorted(missing)}; pass the blocks of the StageContext and of the stage"
+            )
+        for block, binding in self._bindings.items():
+            buffers[block].bind_to_storage_buffer(binding)
+        for sampler, unit in self._textures.items():
+            buffers[sampler].use(unit)
+        if ITERATION in self.blocks:
+            buffers[ITERATION].bind_to_uniform_block(UNIFORM_BINDINGS[ITERATION])
+        if self._texel_buffers is not None:
+            self._texel_buffers.bind(buffers)
+        if self._parameters is not None and self.record is not None:
+            self._parameters.write(self.record.pack(dict(parameters or {})))
+            self._parameters.bind_to_uniform_block(UNIFORM_BINDINGS[PARAMETERS])
         if self.before_dispatch is not None:
             self.before_dispatch()
             self.before_dispatch = None
@@ -161,12 +160,9 @@ class ComputeProgram(Program):
         def groups() -> int:
             return math.prod(struct.unpack("=3I", arguments.read(12, offset=offset)))
 
-        if self.context.is_software:
-            # The driver has computed the arguments already: what runs for nothing is not even bound.
-            count = groups()
-            if count == 0:
-                return
-            groups = functools.partial(int, count)
+        # A driver on the processor has computed the arguments already: what runs for nothing is not even bound.
+        if self.context.is_software and groups() == 0:
+            return
         self._bind(buffers, parameters)
         self._run(groups, lambda: self._program.run_indirect(arguments, offset))
 

@@ -2,7 +2,6 @@
 """Hits become closures in one batched pass (DIRT's deferred fetch)."""
 
 import enum
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import moderngl
@@ -273,23 +272,13 @@ class Resolve(BufferSet):
 
         # A list of paths is laid out as the order of a single program's hits.
         order = active.buffer if len(self._programs) == 1 else self._order_by_program(buffers, active)
-        buffers["HitOrder"] = order
-        for number in self._programs_with_hits(order):
-            program, arguments = self._programs[number], 4 * (_RANGE_SIZE * number + 4)
-            ordered, of_program = buffers, {**parameters, "program": number}
+        for number, program in enumerate(self._programs):
+            arguments = 4 * (_RANGE_SIZE * number + 4)
+            ordered, of_program = {**buffers, "HitOrder": order}, {**parameters, "program": number}
             if self._ray_counts[number].levels:
-                ordered = dict(buffers)
                 ordered["NodeRays"] = self._node_rays.require(closures.size // CLOSURE.size * self._ray_stride)
                 of_program |= self._trace_node_rays(program, order, arguments, ordered, of_program)
             program.run_indirect(order, arguments, ordered, of_program)
-
-    def _programs_with_hits(self, order: moderngl.Buffer) -> Sequence[int]:
-        """Numbers of the programs that have hits, where that is known at no cost, else of all."""
-        count = len(self._programs)
-        if not self._library.context.is_software:
-            return range(count)
-        ranges = np.frombuffer(order.read(4 * _RANGE_SIZE * count), np.uint32).reshape(count, _RANGE_SIZE)
-        return np.flatnonzero(ranges[:, 4:7].all(axis=1)).tolist()
 
     def _trace_node_rays(
         self,
