@@ -10,8 +10,9 @@ MISSING = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")
 """Magenta, in place of an image that there is not."""
 
 
-def image_records(images: list[Image]) -> tuple[np.ndarray, np.ndarray]:
-    """Return (n,) IMAGE_ENTRY records, and (m,) uint32, the images' texels one after the other."""
+def image_records(images: list[Image]) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Return (n,) IMAGE_ENTRY records, and the texels of each image, (m,) uint32, which follow each other on the
+    device."""
     entries = IMAGE_ENTRY.zeros(len(images))
     texels, first = [], 0
     for entry, image in zip(entries, images, strict=True):
@@ -20,7 +21,7 @@ def image_records(images: list[Image]) -> tuple[np.ndarray, np.ndarray]:
         entry["first_texel"], entry["width"], entry["height"], entry["format"] = first, width, height, kind
         texels.append(data)
         first += len(data)
-    return entries, np.concatenate(texels)
+    return entries, texels
 
 
 def _texels(image: Image) -> tuple[np.ndarray, TexelFormat]:

@@ -183,7 +183,11 @@ class MaterialTables(BufferSet):
         self._images = []  # should an upload fail
         entries, texels = image_records(images)
         self._image_entries.upload(entries)
-        self._texels.upload(texels)
+        self._texels.require_items(sum(map(len, texels)))
+        offset = 0
+        for part in texels:
+            self._texels.write(part, offset)
+            offset += part.nbytes
         self._images = images
 
     def evaluate(

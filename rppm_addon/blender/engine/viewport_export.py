@@ -46,7 +46,7 @@ class ViewportExport:
         if visibility != self._visibility:
             self._visibility = visibility
             self._sync.relist()
-        seconds = self._pacing.begin()
+        seconds = self._pacing.begin(is_first=self._sync.scene is None)
         if is_playing(context) and self._sync.scene is not None:
             seconds = math.inf
         try:

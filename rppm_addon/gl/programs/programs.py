@@ -154,14 +154,17 @@ class ProgramLibrary:
             self.on_start(name)
 
     def _compute(self, path: str, defines: dict, inserts: dict, large: frozenset[str] = frozenset()) -> ComputeProgram:
+        key = _key(path, defines, inserts)
+
         def make() -> ComputeProgram:
-            source = expand(path, defines, inserts, self._reads_texels, large)
+            expected = None if large else self._sources.get(key)
+            source = expected or expand(path, defines, inserts, self._reads_texels, large)
             program = ComputeProgram(self.context, self._maker, source, links_later=not inserts)
             if not large:
                 program.with_large = functools.partial(self._compute, path, defines, inserts)
             return program
 
-        return self._get((*_key(path, defines, inserts), *sorted(large)), make)
+        return self._get((*key, *sorted(large)), make)
 
     def _draw(self, vertex: str, fragment: str, defines: dict, large: frozenset[str] = frozenset()) -> DrawProgram:
         def make() -> DrawProgram:

@@ -138,7 +138,7 @@ class _Expansion:
         if name in self.files:
             return
         try:
-            text = self._inserts.get(name) or (SHADER_FOLDER / name).read_text(encoding="utf-8")
+            text = self._inserts.get(name) or _text_of_file(str(SHADER_FOLDER / name))
         except OSError as error:
             problem = f"cannot include {name}" if self.files else "there is no such file below shaders/"
             raise ShaderError(f"{includer}: {problem} ({error.strerror})") from error
@@ -198,6 +198,16 @@ def _included_file(match: re.Match, defines: Mapping[str, object], includer: str
             raise ShaderError(f"{includer}: {define} is not defined")
         return str(other)
     return f"{defines[define]}/{PurePosixPath(other).name}" if other else str(defines[define])
+
+
+def _text_of_file(path: str) -> str:
+    """Text of a file, the same object until the file changes. Raises OSError."""
+    return _read_file(path, Path(path).stat().st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=512)
+def _read_file(path: str, _modified: int) -> str:
+    return Path(path).read_text(encoding="utf-8")
 
 
 @functools.lru_cache(maxsize=512)

@@ -31,6 +31,7 @@ _OTHER_CHANGE = re.compile(r"\s*(?:\.\s*\w+\s*)*(?:(?:[-+*/%|&^]|<<|>>)?=(?!=)|\
 _CHANGE_BEFORE = re.compile(r"(?:\batomic\w+\s*\(|\+\+|--)\s*$")
 _BRACKET = re.compile(r"//.*|[\[\]]")
 """And comments, whose brackets are none."""
+_LENGTH = re.compile(r"\b(\w+)\s*\.\s*length\b")
 _WORD_BEFORE = re.compile(r"\b\w+$")
 _MEMBER_BEHIND = re.compile(r"\.(\w+)\[")
 _LONGEST_NAME = 64
@@ -66,13 +67,14 @@ def read_as_texels(
     for_words = dict(zip(sorted(large), reversed(units[len(large_units) : IMAGES_FOR_LARGE]), strict=False))
     units = units[len(large_units) :]
     arrays: dict[str, frozenset[str]] = {}
+    with_length = frozenset(_LENGTH.findall(text))  # which texel buffers do not have
 
     def declare(match: re.Match) -> str:
         block, item, array = match["block"], match["item"], match["array"]
         is_wanted = block in large_units or (others and bool(units))
         if not is_wanted or block in found or not (item in Record.registry or item in KINDS):
             return match[0]
-        if _asks_for_length(text, array):
+        if array in with_length:
             return match[0]
         unit, words = (large_units[block], _WORDS) if block in large_units else (units.pop(0), _words_of_a_texel(item))
         kind = _FORMAT_BY_WORDS[words]
@@ -83,7 +85,7 @@ def read_as_texels(
 
     for match in _WRITTEN_ARRAY.finditer(text) if large_units else ():
         block, array = match["block"], match["array"]
-        if block not in large_units or _asks_for_length(text, array):
+        if block not in large_units or array in with_length:
             continue
         written = _written(text, match, large_units[block], for_words.get(block))
         if written is not None:
@@ -93,11 +95,6 @@ def read_as_texels(
                 units.remove(for_words[block])
     text = _READ_ARRAY.sub(declare, text)
     return _with_calls(text, arrays), found
-
-
-def _asks_for_length(text: str, array: str) -> bool:
-    """Return whether a shader asks for the array's length, which texel buffers do not have."""
-    return re.search(rf"\b{array}\s*\.\s*length\b", text) is not None
 
 
 def _words_of_a_texel(item: str) -> int:

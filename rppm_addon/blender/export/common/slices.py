@@ -12,6 +12,10 @@ SHORTEST_SECONDS, LONGEST_SECONDS = 0.03, 0.3
 """Lengths of slices between which Blender takes little time, and much."""
 _SLICE_RATIO = 0.6
 """Ratio of a slice to the time that Blender takes between two: exports take up to three eighths of the time."""
+FIRST_SECONDS, LONGEST_FIRST_SECONDS = 0.06, 0.12
+"""The same, while there is no picture yet that somebody works with."""
+_FIRST_RATIO = 1.5
+"""The ratio of that time: first exports take up to three fifths of it."""
 _MOST_STRETCH = 2.5
 """By how much a slice may last longer."""
 _FRESH_SECONDS = 0.005
@@ -35,16 +39,20 @@ class SlicePacing:
     """Lengths of slices: the longer Blender takes between two of them, the longer they are.
 
     Redraws of a large scene may take half a second each. Slices that are short beside them would hardly shorten the
-    time for which Blender does not answer, and would have the export wait for many more redraws.
+    time for which Blender does not answer, and would have the export wait for many more redraws. Slices of a viewport's
+    first export are longer: somebody waits for its picture.
     """
 
     def __init__(self) -> None:
         self._ended_at: float | None = None
 
-    def begin(self) -> float:
-        """Begin a slice and return its length, in seconds."""
+    def begin(self, is_first: bool = False) -> float:
+        """Begin a slice and return its length, in seconds. is_first: it is part of a first export."""
         between = 0.0 if self._ended_at is None else time.monotonic() - self._ended_at
-        return min(max(SHORTEST_SECONDS, _SLICE_RATIO * between), LONGEST_SECONDS)
+        shortest, longest, ratio = SHORTEST_SECONDS, LONGEST_SECONDS, _SLICE_RATIO
+        if is_first:
+            shortest, longest, ratio = FIRST_SECONDS, max(LONGEST_FIRST_SECONDS, ratio * between), _FIRST_RATIO
+        return min(max(shortest, ratio * between), longest)
 
     def end(self, is_last: bool) -> None:
         """End a slice; what follows the last one of an export is not measured."""
@@ -111,6 +119,17 @@ class Slices:
             # Waiting here, not in a loop of slices, leaves the processor to the thread.
             if not job.wait(max(self._began + self._seconds - time.monotonic(), 0.0)):
                 raise Unfinished
+            del record[name]
+            record[name] = job.result()
+        return record[name]
+
+    def computed_so_far(self, record: dict[Hashable, Any], name: Hashable, compute: Callable[[], Any]) -> Any:
+        """As computed(), but None until it is done: the export goes on with something else meanwhile."""
+        if name not in record:
+            record[name] = _Job(compute)
+        if isinstance(job := record[name], _Job):
+            if not job.wait(0.0):
+                return None
             del record[name]
             record[name] = job.result()
         return record[name]

@@ -10,23 +10,21 @@ import bpy
 import numpy as np
 
 from ....scene.common.whole_files import is_no_file
-from ....scene.common.working_space import REC709, WorkingSpace
-from ....scene.images import Image, encode_srgb
+from ....scene.images import Image
 from ..common.slices import Slices
-from .color_spaces import WHITE_IN_CYCLES, scene_linear, working_space
+from .color_spaces import scene_linear
+from .image_look import ImageLook, encoded
 from .kept_images import keep, kept
+from .late_image import LateImage
 from .multilayer import PassSelection, file_of, read_pass
 from .texture_limit import limited
 
 Warn = Callable[[str], None]
 """Tells the user what is done about the node that shows an image."""
 
-_PART = 1 << 16
-"""Numbers that are looked at while they lie in a cache."""
 _LARGE = 1 << 20
 """Pixels from which on an image is read in steps."""
 _FIRST_PASS = PassSelection()
-_DATA = {"Non-Color", "Raw", "scene_linear"}
 
 
 class ImageTable:
@@ -43,6 +41,9 @@ class ImageTable:
         self.slices = Slices()
         """Slices of the export that reads images."""
         self._indices: dict[tuple, int] = {}
+        self._late: dict[int, tuple[_Place, LateImage]] = {}
+        """By index, large images that are read while the export goes on, one after the other: their numbers take four
+        times the memory."""
         self._unfinished: dict[Hashable, dict] = {}
         """Records of the steps done so far for images that take more than one slice, by image key."""
 
@@ -67,6 +68,25 @@ class ImageTable:
         del self._unfinished[key]
         self.images.append(image)
         return len(self.images) - 1
+
+    def advance(self) -> None:
+        """Go on with the large images as far as no thread is to be waited for. May raise Unfinished."""
+        self._read_late(waits=False)
+
+    def finish(self) -> None:
+        """Have all images whole. Raises Unfinished when the slice is over."""
+        self._read_late(waits=True)
+
+    def _read_late(self, waits: bool) -> None:
+        while self._late:
+            index, (place, late) = next(iter(self._late.items()))
+            if not late.advance(self.slices, waits):
+                return
+            del self._late[index]
+            if late.image is not None:
+                self.images[index] = late.image
+            if late.whole is not None and (image := place.find()) is not None:
+                keep(image, place.selection, late.whole)
 
     def tiles(self, node: bpy.types.Node, warn: Warn) -> np.ndarray | None:
         """(n,) float32 index of the image of each UDIM tile from 1001 on, -1 where none is; None without tiles."""
@@ -97,6 +117,9 @@ class ImageTable:
         if key not in self._indices:
             record = self._unfinished.setdefault(key, {})
             exported = self._pixels(image, load, record, selection)
+            if isinstance(exported, LateImage):
+                self._late[len(self.images)] = _Place(image.session_uid, selection), exported
+                exported = _NOT_YET
             del self._unfinished[key]
             if exported is None:
                 self._indices[key] = MISSING
@@ -113,44 +136,75 @@ class ImageTable:
         load: Callable[[], bpy.types.Image | None],
         record: dict,
         selection: PassSelection,
-    ) -> Image | None:
+    ) -> Image | LateImage | None:
         if "whole" not in record:
             is_none = _is_no_file(image.filepath, image)
-            record["whole"] = None if is_none else _export(image, load, self.slices, record, selection)
+            record["whole"] = None if is_none else self._export(image, load, record, selection)
         whole = record["whole"]
-        if whole is None or self.longest_side == 0:
+        if whole is None or self.longest_side == 0 or isinstance(whole, LateImage):
             return whole
         return self.slices.computed(record, "limited", lambda: limited(whole, self.longest_side))
 
+    def _export(
+        self,
+        image: bpy.types.Image,
+        load: Callable[[], bpy.types.Image | None],
+        record: dict,
+        selection: PassSelection,
+    ) -> Image | LateImage | None:
+        """Return the pixels of an image as ``load`` gives it; None when it has none.
 
-def _export(
-    image: bpy.types.Image,
-    load: Callable[[], bpy.types.Image | None],
-    slices: Slices,
-    record: dict,
-    selection: PassSelection,
-) -> Image | None:
-    """Return the pixels of an image as ``load`` gives it; None when it has none.
-
-    record: the steps that earlier slices have done. selection: what is shown of a multilayer file.
-    """
-    # Asks for the image's size: Blender decodes the file.
-    known = slices.step_alone(record, "known", lambda: kept(image, selection))
-    if known is not None:
-        return known
-    loaded = load()
-    if loaded != image:
-        exported = None if loaded is None else _read_loaded(image, loaded, selection)
-        if loaded is not None:
-            bpy.data.images.remove(loaded)
+        record: the steps that earlier slices have done. selection: what is shown of a multilayer file.
+        """
+        slices = self.slices
+        # Asks for the image's size: Blender decodes the file.
+        known = slices.step_alone(record, "known", lambda: kept(image, selection))
+        if known is not None:
+            return known
+        loaded = load()
+        if loaded != image:
+            exported = None if loaded is None else _read_loaded(image, loaded, selection)
+            if loaded is not None:
+                bpy.data.images.remove(loaded)
+            return exported
+        if _is_multilayer(image):
+            exported = slices.step_alone(record, "pass", lambda: _multilayer_pass(image, image, selection))
+        else:
+            shape, look = _shape(image), ImageLook.of(image)
+            if shape is None:
+                return None
+            if slices.are_limited and shape[0] * shape[1] >= _LARGE and not look.needs_blender:
+                return self._late_image(shape, look, _Place(image.session_uid, selection))
+            exported = slices.step(record, "encoded", lambda: _read_at_once(image, look))
+        if exported is not None:
+            keep(image, selection, exported)
         return exported
-    if _is_multilayer(image):
-        exported = slices.step_alone(record, "pass", lambda: _multilayer_pass(image, image, selection))
-    else:
-        exported = _read_in_steps(image, slices, record)
-    if exported is not None:
-        keep(image, selection, exported)
-    return exported
+
+    def _late_image(self, shape: tuple[int, int, int], look: ImageLook, place: "_Place") -> LateImage:
+        longest_side = self.longest_side
+
+        def read(stored: np.ndarray) -> bool:
+            image = place.find()
+            return image is not None and _shape(image) == shape and _read(image, stored)
+
+        return LateImage(
+            shape,
+            read,
+            lambda stored: encoded(look, _four_channels(stored, look.is_float)),
+            lambda whole: limited(whole, longest_side) if longest_side else whole,
+        )
+
+
+@dataclass(frozen=True)
+class _Place:
+    """An image's session_uid and the selection of a pass, by which Blender's image is found again in another slice."""
+
+    session_uid: int
+    selection: PassSelection
+
+    def find(self) -> bpy.types.Image | None:
+        """Return Blender's image; None if it is gone."""
+        return next((image for image in bpy.data.images if image.session_uid == self.session_uid), None)
 
 
 def _read_loaded(image: bpy.types.Image, loaded: bpy.types.Image, selection: PassSelection) -> Image | None:
@@ -158,7 +212,7 @@ def _read_loaded(image: bpy.types.Image, loaded: bpy.types.Image, selection: Pas
     pixels = read_pixels(loaded)
     if pixels is None and _is_multilayer(loaded):
         return _multilayer_pass(image, loaded, selection)
-    return None if pixels is None else _encoded(_Look.of(image), pixels)
+    return None if pixels is None else encoded(ImageLook.of(image), pixels)
 
 
 def _is_multilayer(image: bpy.types.Image) -> bool:
@@ -172,29 +226,14 @@ def _multilayer_pass(image: bpy.types.Image, loaded: bpy.types.Image, selection:
         pixels = read_pass(path, selection)
     if pixels is None:
         return None
-    look = replace(_Look.of(image), is_float=True)
+    look = replace(ImageLook.of(image), is_float=True)
     is_data = pixels.shape[-1] < 3
     pixels = _four_channels(pixels, is_float=True)
     if is_data:
         return Image(look.name, pixels, "LINEAR")
     if not look.is_linear:
         pixels[..., :3] = scene_linear(pixels[..., :3], look.space)
-    return _encoded(look, pixels)
-
-
-def _read_in_steps(image: bpy.types.Image, slices: Slices, record: dict) -> Image | None:
-    """Blender's part is to write its numbers to memory that a thread has made ready: writing to it for the first time
-    may take several times as long. A thread encodes them."""
-    shape, look = _shape(image), _Look.of(image)
-    if shape is None:
-        return None
-    if shape[0] * shape[1] < _LARGE or look.needs_blender:
-        return slices.step(record, "encoded", lambda: _read_at_once(image, look))
-    make = np.ones if slices.are_limited else np.empty
-    stored = slices.computed(record, "memory", lambda: make(shape, np.float32))
-    if not slices.step_alone(record, "is read", lambda: _read(image, stored)):
-        return None
-    return slices.computed(record, "encoded", lambda: _encoded(look, _four_channels(stored, look.is_float)))
+    return encoded(look, pixels)
 
 
 def _is_no_file(path: str, image: bpy.types.Image) -> bool:
@@ -210,6 +249,8 @@ def _is_no_file(path: str, image: bpy.types.Image) -> bool:
 
 MISSING = -1
 """Stands for an image without pixels; it is magenta."""
+_NOT_YET = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")
+"""Magenta, in the place of a large image until that is read, and where Blender has lost its pixels meanwhile."""
 
 
 def frame_of(user: bpy.types.ImageUser, scene_frame: int) -> int:
@@ -258,103 +299,9 @@ def _load(path: str, like: bpy.types.Image) -> bpy.types.Image | None:
     return image
 
 
-def _read_at_once(image: bpy.types.Image, look: "_Look") -> Image | None:
+def _read_at_once(image: bpy.types.Image, look: ImageLook) -> Image | None:
     pixels = read_pixels(image)
-    return None if pixels is None else _encoded(look, pixels)
-
-
-@dataclass(frozen=True)
-class _Look:
-    """Properties of a Blender image other than its pixels, so that threads need not ask Blender."""
-
-    name: str
-    space: str
-    alpha_mode: str
-    is_float: bool
-    is_associated: bool
-    is_in_file: bool
-    working: WorkingSpace
-    """Space of the scene's colors."""
-
-    @classmethod
-    def of(cls, image: bpy.types.Image) -> "_Look":
-        """Return the properties of an image."""
-        space, in_file = image.colorspace_settings.name, image.source != "GENERATED" and image.packed_file is None
-        return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file, working_space())
-
-    @property
-    def times_alpha(self) -> int:
-        """Number of times, 0 to 2, that the colors of its bytes are multiplied by alpha.
-
-        Cycles takes those in files for straight, whatever the user says.
-        """
-        if not self.is_associated:
-            return 0
-        return 2 if self.alpha_mode == "PREMUL" and self.is_in_file else 1
-
-    @property
-    def is_linear(self) -> bool:
-        """True where the file has linear colors of the working space, or data."""
-        return self.space in {*_DATA, self.working.name} or (self.working is REC709 and self.space == "Linear")
-
-    @property
-    def is_srgb(self) -> bool:
-        """True where the renderer decodes the colors, which are those of Rec.709 by the curve of sRGB."""
-        return self.space == "sRGB" and self.working is REC709
-
-    @property
-    def needs_blender(self) -> bool:
-        """Whether Blender is asked to convert its colors."""
-        return not (self.is_float or self.is_linear or self.is_srgb)
-
-
-def _encoded(look: _Look, pixels: np.ndarray) -> Image:
-    """Pixels as they are to be filtered: encoded where Cycles does it, and colors times alpha."""
-    space = look.space
-    if look.alpha_mode == "NONE":
-        pixels[..., 3] = 1.0
-    if look.is_float:
-        # Blender has made them linear.
-        pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
-        if look.is_srgb:
-            pixels[..., :3] = encode_srgb(pixels[..., :3])
-        return Image(look.name, pixels, "SRGB" if look.is_srgb else "LINEAR")
-    if look.needs_blender:
-        encoded = pixels[..., :3]
-        if look.times_alpha == 2:
-            encoded = _times_alpha(_bytes(pixels)) / np.float32(255.0)
-        linear = scene_linear(encoded, space) * WHITE_IN_CYCLES.get(space, 1.0)
-        pixels[..., :3] = linear * pixels[..., 3:] if look.times_alpha else linear
-        return Image(look.name, pixels, "LINEAR")
-    encoding = "SRGB" if look.is_srgb else "LINEAR"
-    pixels = _bytes(pixels)
-    if look.is_associated and pixels[..., 3].min() < 255:
-        colors = _times_alpha(pixels) if look.times_alpha == 2 else pixels[..., :3].astype(np.uint16)
-        pixels[..., :3] = colors * pixels[..., 3:] // 255
-    return Image(look.name, pixels, encoding)
-
-
-def _times_alpha(pixels: np.ndarray) -> np.ndarray:
-    """(height, width, 3) uint16 colors of bytes, multiplied by their alpha and rounded."""
-    return (pixels[..., :3].astype(np.uint16) * pixels[..., 3:] + 127) // 255
-
-
-def _bytes(pixels: np.ndarray) -> np.ndarray:
-    """Bytes that Blender has given as numbers from 0 to 1."""
-    flat, result = pixels.reshape(-1), np.empty(pixels.size, np.uint8)
-    for start in range(0, len(flat), _PART):
-        part = flat[start : start + _PART] * np.float32(255.0)
-        result[start : start + _PART] = np.rint(part, out=part)
-    return result.reshape(pixels.shape)
-
-
-def is_associated(image: bpy.types.Image | None) -> bool:
-    """Whether an image's colors come multiplied by its alpha, and are divided by it where alpha is used as well."""
-    return (
-        image is not None
-        and image.alpha_mode in {"STRAIGHT", "PREMUL"}
-        and image.colorspace_settings.name not in {"Non-Color", "Raw"}
-    )
+    return None if pixels is None else encoded(look, pixels)
 
 
 def _reason(image: bpy.types.Image) -> str:

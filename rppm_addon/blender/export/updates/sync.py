@@ -158,10 +158,12 @@ class SceneSync:
         self._cull(Culling() if self._viewport else Culling(source, camera))
         if not self._is_unfinished:
             self._forget_outdated()
+        context.images.advance()
         self._add_untracked(source.frame_current_final)
         self._objects.renew_materials(depsgraph, edits, self._pending)
         world, suns = self._world.update(depsgraph)
         placed = self._objects.update(depsgraph, edits, self._pending, shown)
+        context.images.finish()
         settings = export_settings(source, depsgraph.view_layer, self._viewport)
         settings.validate()
         new = Scene(camera=camera, settings=settings, world=world)

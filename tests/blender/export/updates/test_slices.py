@@ -8,6 +8,8 @@ import pytest
 
 from rppm_addon.blender.export.common import slices as slices_module
 from rppm_addon.blender.export.common.slices import (
+    FIRST_SECONDS,
+    LONGEST_FIRST_SECONDS,
     LONGEST_SECONDS,
     SHORTEST_SECONDS,
     SlicePacing,
@@ -59,6 +61,27 @@ def test_a_thread_computes_between_slices_and_its_errors_come_back():
     with pytest.raises(ZeroDivisionError):
         slices.computed(record, "wrong", lambda: 1 / 0)
     assert slices.computed(record, "wrong", lambda: 2) == 2
+
+
+def test_others_go_on_while_a_thread_computes():
+    slices, record, may_end = Slices(), {}, threading.Event()
+    slices.begin(0.0)
+    assert slices.computed_so_far(record, "slow", lambda: may_end.wait(60.0)) is None
+    may_end.set()
+    while (found := slices.computed_so_far(record, "slow", None)) is None:
+        pass
+    assert found is True and record == {"slow": True}
+
+
+@pytest.mark.parametrize(("redraw", "expected"), [(0.01, FIRST_SECONDS), (0.06, 0.09), (0.1, LONGEST_FIRST_SECONDS)])
+def test_slices_of_a_first_export_are_longer(monkeypatch, redraw, expected):
+    now = [100.0]
+    monkeypatch.setattr(slices_module, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    pacing = SlicePacing()
+    assert pacing.begin(is_first=True) == FIRST_SECONDS
+    pacing.end(is_last=False)
+    now[0] += redraw
+    assert pacing.begin(is_first=True) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(("redraw", "expected"), [(0.01, SHORTEST_SECONDS), (0.2, 0.12), (2.0, LONGEST_SECONDS)])

@@ -36,7 +36,7 @@ from ...geometry.strands.attributes import (
     THICKNESS,
 )
 from ...images.color_spaces import working_space
-from ...images.images import is_associated
+from ...images.image_look import is_associated
 from .graphs import GraphExporter, handles, snake_case
 from .links import Path
 from .texture_mapping import is_mapped
