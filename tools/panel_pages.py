@@ -151,7 +151,7 @@ def sections() -> dict[str, list[tuple[int, Section]]]:
 def _page_of(cls: type[bpy.types.Panel], found: dict[str, Section]) -> str:
     place = getattr(cls, "bl_context", "")
     if place == "data":
-        return "camera" if cls.__name__ == "RPPM_PT_panorama" else "light"
+        return {"RPPM_PT_panorama": "camera", "RPPM_PT_volume_velocity": "volume"}.get(cls.__name__, "light")
     if place in TABS:
         return place
     top = found[cls.__name__]
@@ -196,6 +196,7 @@ def _contexts() -> Iterator[SimpleNamespace]:
         yield context_of(scene, object=thing, light=data, world=scene.world)
     data = bpy.data.cameras.new("Camera")
     data.type = "PANO"
+    yield context_of(scene, volume=bpy.data.volumes.new("Volume"), world=scene.world)
     camera = bpy.data.objects.new("Camera", data)
     scene.collection.objects.link(camera)
     for bake_type in ("COMBINED", "DIFFUSE", "NORMAL"):

@@ -5,6 +5,7 @@
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: THIN_FILM_LOBES=1
 // lint: PORTALS=1
 // lint: COUNTS_BOUNCES=1
 // lint: EMITTERS=lights/two_levels

@@ -49,13 +49,13 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
         float white = white_albedo(roughness, cosine);
         float rise = lobe.ior > 1.0 ? dielectric_grazing_albedo(lobe.ior, roughness, cosine) / white
                                     : dielectric_interpolation(cosine, lobe.ior);
-        vec3 f0 = kind == LOBE_DIELECTRIC ? lobe.f0
-                  : kind == LOBE_GLASS    ? lobe.tint * normal_reflectance(lobe.ior)
-                                          : lobe.tint;
-        float energy = kind == LOBE_GLASS        ? max(glass_albedo(lobe.ior, roughness, cosine), 0.05)
-                       : kind == LOBE_DIELECTRIC ? white
-                                                 : 1.0;
-        colors.glossy += lobe.weight * energy * not_nothing(mix(f0, vec3(1.0), rise));
+        vec3 f0 = kind == LOBE_DIELECTRIC ? lobe.f0 : lobe.tint * normal_reflectance(lobe.ior);
+        float energy = kind == LOBE_DIELECTRIC ? white : max(glass_albedo(lobe.ior, roughness, cosine), 0.05);
+        vec3 glossy = mix(f0, vec3(1.0), rise);
+#ifdef THIN_FILM_LOBES
+        if (lobe_has_film(lobe)) glossy = reflectance;
+#endif
+        colors.glossy += lobe.weight * energy * not_nothing(glossy);
         if (lobe_transmits(kind)) colors.transmission += lobe.f0 * energy * not_nothing(1.0 - reflectance);
     }
 }

@@ -6,6 +6,7 @@
 // lint: HAIR_LOBES=1
 // lint: ROUGHNESS_PASS=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: THIN_FILM_LOBES=1
 // lint: RAY_PORTALS=1
 // First surfaces of camera paths, for the passes of scene/passes.py. As in Cycles, surfaces below the
 // view layer's Alpha Threshold are skipped, and depth is measured along the view axis, or in a panorama along the ray.

@@ -5,6 +5,7 @@
 // position, triangle, flags, material, distance, geometric_normal, shading_normal. All normals are on the viewer's
 // side; so are those that nodes get, unless a normal map turns them away.
 
+#define ADDS_LOBES
 #include <CausticKinds>
 #include "common/bsdf/closure.glsl"
 

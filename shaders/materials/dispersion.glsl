@@ -4,7 +4,7 @@
 
 #include "materials/builder.glsl"
 #include "materials/albedo_tables.glsl"
-#include "materials/working_space.glsl"
+#include "common/working_space.glsl"
 #include <DispersionTable>
 #define DISPERSES
 

@@ -3,21 +3,9 @@
 
 #include "materials/builder.glsl"
 #include "materials/albedo_tables.glsl"
-#include "materials/thin_film.glsl"
 
 // Films thinner than this, nm, are none.
 const float THINNEST_FILM = 0.1;
-
-struct Film {
-    float thickness;
-    float ior;
-};
-
-// Microfacets under a film follow the curve of the bare base, with the reflectance at normal incidence that gives what
-// the film reflects at the angle of the viewer to the normal; rise: of the curve, there.
-vec3 at_normal_incidence(vec3 reflectance, float rise) {
-    return clamp((reflectance - rise) / max(1.0 - rise, 1e-3), 0.0, 1.0);
-}
 
 // Where a node's microfacets lie: normal packed and unpacked, anisotropy packed, roughness of the mean alpha.
 struct Microfacets {
@@ -91,15 +79,6 @@ void add_phong_mirror(inout ClosureBuilder builder, Microfacets at, float weight
     add_lobe(builder, microfacet_lobe(at, LOBE_MIRROR, weight * color, vec3(1.0), vec3(0.0), 1.0));
 }
 
-// What a film reflects, for the angle of the viewer.
-vec3 film_reflectance(Microfacets at, Film film, float before, float behind, FilmMetal metal) {
-    return thin_film_reflectance(at.cosine, film.thickness, before, film.ior, behind, metal);
-}
-
-vec3 covered_metal(Microfacets at, vec3 reflectance) {
-    return at_normal_incidence(reflectance, schlick_interpolation(at.cosine));
-}
-
 // f0: at normal incidence; edge: the tint at 82 degrees; white: white_albedos.
 MicrofacetLobe metal_lobe(Microfacets at, vec3 weight, vec3 f0, vec3 edge, bool multiscatter, vec2 white) {
     vec3 factor = vec3(1.0);
@@ -127,14 +106,12 @@ MicrofacetLobe glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3
     return microfacet_lobe(at, LOBE_GLASS, reflected, transmitted, tint, relative);
 }
 
-// reflectance: of the film.
-MicrofacetLobe covered_glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3 reflectance, float relative) {
-    vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
-    return microfacet_lobe(at, LOBE_COATED_GLASS, reflected, transmitted, f0, relative);
-}
-
-vec3 glass_film_reflectance(ClosureBuilder builder, Microfacets at, Film film, float ior) {
-    return film_reflectance(at, film, builder.backfacing ? ior : 1.0, builder.backfacing ? 1.0 : ior, NO_METAL);
+// ior: of the glass, to which indices are relative where the film is seen from within. As in Cycles it seems thinner
+// there, by that index.
+MicrofacetLobe covered_glass_lobe(ClosureBuilder builder, MicrofacetLobe lobe, Film film, float ior) {
+    if (film.thickness <= THINNEST_FILM) return lobe;
+    if (builder.backfacing) film.ior /= ior;
+    return covered_lobe(lobe, film, false);
 }
 
 void add_refraction(inout ClosureBuilder builder, Microfacets at, vec3 weight, float ior) {

@@ -57,45 +57,25 @@ float specular_ior(Principled p, out float f0) {
     return p.ior < 1.0 ? 1.0 / ior : ior;
 }
 
-// What the film reflects, over each of the three that it lies on: no reflectances where it lies on none.
-struct Films {
-    vec3 metal, glass, base;
-};
-
-Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, float base_ior) {
-    Films films = Films(vec3(0.0), vec3(0.0), vec3(0.0));
-    int count = p.film.thickness > THINNEST_FILM ? 3 : 0;
-    for (int k = 0; k < count; ++k) {
-        bool on_metal = k == 0, on_glass = k == 1, leaving = on_glass && builder.backfacing;
-        float before = leaving ? p.ior : 1.0, behind = on_metal || leaving ? 1.0 : on_glass ? p.ior : base_ior;
-        FilmMetal metal = metal_below_film(min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.film.ior);
-        if (!on_metal) metal = NO_METAL;
-        vec3 reflectance = film_reflectance(at, p.film, before, behind, metal);
-        if (on_metal) films.metal = reflectance;
-        else if (on_glass) films.glass = reflectance;
-        else films.base = reflectance;
-    }
-    return films;
-}
-
-MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, float ior, vec3 film, inout vec3 weight) {
-    if (p.film.thickness > THINNEST_FILM) {
-        vec3 beside = at_normal_incidence(film, dielectric_interpolation(at.cosine, ior));
-        MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior);
-        weight = beneath(weight, film);
-        return lobe;
-    }
-    if (f0 <= 0.0) return NO_LOBE;
+MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, float ior, inout vec3 weight) {
+    bool film = p.film.thickness > THINNEST_FILM;
+    if (f0 <= 0.0 && !film) return NO_LOBE;
     vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
     float white = white_albedo(p.roughness, at.cosine);
     float grazing = dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white;
     vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), grazing);
+    if (film) {
+        // As in Cycles, by the angle of the viewer to the normal.
+        vec3 reflectance = thin_film_reflectance(at.cosine, p.film.thickness, 1.0, p.film.ior, ior, NO_METAL);
+        albedo = scaled_film(reflectance, tinted, ior);
+    }
     if (p.multiscatter) {
         float base = normal_reflectance(ior);
         factor = multiscatter_factor(whites, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
         albedo *= factor * white;
     }
     MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior);
+    if (film) lobe = covered_lobe(lobe, p.film, false);
     weight = beneath(weight, albedo);
     return lobe;
 }
@@ -150,11 +130,11 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
                                              p.anisotropic_rotation);
     bool film = p.film.thickness > THINNEST_FILM;
     float f0, ior = specular_ior(p, f0);
-    Films films = film_reflectances(builder, p, at, ior);
     vec2 whites = white_albedos(at);
     if (p.metallic > 0.0) {
-        metal = metal_lobe(at, weight * p.metallic, film ? covered_metal(at, films.metal) : min(p.base_color, 1.0),
-                           film ? vec3(1.0) : min(p.specular_tint, 1.0), p.multiscatter, whites);
+        metal = metal_lobe(at, weight * p.metallic, min(p.base_color, 1.0), min(p.specular_tint, 1.0), p.multiscatter,
+                           whites);
+        if (film) metal = covered_lobe(metal, p.film, true);
         weight *= 1.0 - p.metallic;
     }
     LAYER_IS_DONE(metal)
@@ -165,18 +145,18 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         if (p.thin_wall)
             thin_glass_lobes(builder, even, glass_weight, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
                              sheet);
-        else if (film)
-            glass = covered_glass_lobe(even, glass_weight, glass_weight * refracted_color, films.glass, relative);
-        else
+        else {
             glass = glass_lobe(even, glass_weight, glass_weight * refracted_color, p.specular_tint,
                                min(refracted_color, 1.0), relative, p.multiscatter);
+            glass = covered_glass_lobe(builder, glass, p.film, p.ior);
+        }
         weight *= 1.0 - p.transmission;
     }
     LAYER_IS_DONE(glass)
     LAYER_IS_DONE(sheet)
     bool reaches_base = !(largest(weight) <= 0.0);
     vec3 below = weight;
-    if (reaches_base) base = base_lobe(p, at, whites, f0, ior, films.base, below);
+    if (reaches_base) base = base_lobe(p, at, whites, f0, ior, below);
     LAYER_IS_DONE(base)
 #ifdef READS_TEXELS
     int layers = node_weight > 0.0 ? 6 : 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers from a node graph may be anything; what they make of light stays finite.
 
+#define ADDS_LOBES
 #include "common/finite.glsl"
 #include "common/bsdf/closure.glsl"
 

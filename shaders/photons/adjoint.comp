@@ -4,6 +4,7 @@
 // lint: MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: THIN_FILM_LOBES=1
 // Photons are weighted by the BSDF as a viewer sees it who looks back along their rays: the adjoint BSDF (Veach 1997,
 // section 3.7). The closures are those that such viewers see.
 

@@ -5,6 +5,7 @@
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: THIN_FILM_LOBES=1
 // lint: COUNTS_BOUNCES=1 DROPS_CAUSTICS=1
 // TracePhotons: at the end of the ray of a photon path, store the photon and sample the next ray.
 

@@ -73,7 +73,7 @@ class RecordingLayout:
 
 def context_of(scene, **members):
     """Return a context of the Properties editor with the members that panels ask for."""
-    nothing = dict.fromkeys(("light", "camera", "material", "world", "object"))
+    nothing = dict.fromkeys(("light", "camera", "volume", "material", "world", "object"))
     return SimpleNamespace(
         **{
             "engine": scene.render.engine,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels of the tabs of a light and of a camera."""
+"""Panels of the tabs of a light, of a camera and of a volume object."""
 
 import bpy
 
@@ -103,6 +103,24 @@ class RPPM_PT_panorama(RppmPanel, bpy.types.Panel):
             column.prop(source, name)
 
 
+class RPPM_PT_volume_velocity(RppmPanel, bpy.types.Panel):
+    """Velocities of a volume object, which Blender's Render panel shows for Cycles only."""
+
+    bl_label = "Velocity"
+    bl_context = "data"
+    bl_parent_id = "DATA_PT_volume_render"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return super().poll(context) and context.volume is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        column = self.column()
+        column.prop(context.volume, "velocity_grid")
+        column.prop(context.volume, "velocity_unit")
+        column.prop(context.volume, "velocity_scale")
+
+
 _FISHEYE_POLYNOMIAL = tuple(f"fisheye_polynomial_k{power}" for power in range(5))
 _PANORAMA_PROPERTIES = {
     "EQUIRECTANGULAR": ("latitude_min", "latitude_max", "longitude_min", "longitude_max"),
@@ -119,4 +137,4 @@ _PANORAMA_PROPERTIES = {
 }
 
 
-CLASSES = (RPPM_PT_light, RPPM_PT_light_beam, RPPM_PT_light_nodes, RPPM_PT_panorama)
+CLASSES = (RPPM_PT_light, RPPM_PT_light_beam, RPPM_PT_light_nodes, RPPM_PT_panorama, RPPM_PT_volume_velocity)

@@ -8,6 +8,8 @@ from ...materials.traits.hair import has_hair
 from ...materials.traits.interiors import Interior
 from ...materials.traits.path_depths import asks_for_bounces_by_type
 from ...materials.traits.ray_portals import has_ray_portals
+from ...materials.traits.thin_films import has_thin_film
+from ...scene.common.working_space import WorkingSpace
 from ...scene.passes import ROUGHNESS
 from ...scene.scene import Scene
 from .viewport_demands import ViewportDemands
@@ -45,12 +47,15 @@ class ShaderFeatures:
     """True where blurred bounces blur the lobes that they see."""
     has_ray_portals: bool = False
     """True where paths go on elsewhere behind some surfaces."""
+    film_space: WorkingSpace | None = None
+    """The space of the colors of thin films; None where no material has one."""
 
     @classmethod
     def of(cls, scene: Scene, demands: ViewportDemands) -> "ShaderFeatures":
         """Return the features of a scene, and those that a viewport demands."""
         volumes = [(scene.world.volume, False)]
         volumes += [(material.interior, material.reads_grids) for material in scene.materials]
+        has_films = demands.has_thin_film or any(has_thin_film(material.graph) for material in scene.materials)
         interiors = [Interior.of(volume, reads_grids) for volume, reads_grids in volumes]
         return cls(
             demands.has_hair or any(has_hair(material.graph) for material in scene.materials),
@@ -68,10 +73,11 @@ class ShaderFeatures:
             ROUGHNESS in scene.settings.rendered_passes,
             scene.settings.blur_glossy > 0.0,
             demands.has_ray_portals or any(has_ray_portals(material.graph) for material in scene.materials),
+            scene.color_space if has_films else None,
         )
 
     @property
-    def defines(self) -> dict[str, int]:
+    def defines(self) -> dict[str, object]:
         """Macros of the features, for programs."""
         macros = {
             "HAIR_LOBES": self.has_hair,
@@ -88,5 +94,7 @@ class ShaderFeatures:
             "ROUGHNESS_PASS": self.shows_roughness,
             "FILTERS_GLOSSY": self.filters_glossy,
             "RAY_PORTALS": self.has_ray_portals,
+            "THIN_FILM_LOBES": self.film_space is not None,
         }
-        return {name: 1 for name, has in macros.items() if has}
+        of_films = {} if self.film_space is None else self.film_space.defines
+        return of_films | {name: 1 for name, has in macros.items() if has}

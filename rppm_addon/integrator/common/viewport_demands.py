@@ -32,11 +32,12 @@ class ViewportDemands:
     has_hair: bool = False
     has_ashikhmin: bool = False
     has_ray_portals: bool = False
+    has_thin_film: bool = False
     traces_rays: bool = False
     casts_rays: bool = False
     """Whether programs are to be ready for light that goes below surfaces, for fibers, for Ashikhmin and Shirley's
-    model, for ray portals, for rays of nodes, and among these for such as begin anywhere, which materials have that
-    something stands in for as yet."""
+    model, for ray portals, for thin films, for rays of nodes, and among these for such as begin anywhere, which
+    materials have that something stands in for as yet."""
 
 
 NO_DEMANDS = ViewportDemands()

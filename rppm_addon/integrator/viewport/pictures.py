@@ -16,6 +16,7 @@ from ...materials.traits.hair import has_hair
 from ...materials.traits.node_rays import casts_rays, traces_rays
 from ...materials.traits.ray_portals import has_ray_portals
 from ...materials.traits.subsurface import has_subsurface
+from ...materials.traits.thin_films import has_thin_film
 from ...scene.materials import Material
 from ...scene.scene import Scene
 from ..common.require import require
@@ -47,6 +48,7 @@ def demands_of(scene: Scene, level: float, materials: Sequence[Material] = ()) -
         has_hair=any(map(has_hair, coming)),
         has_ashikhmin=any(map(has_ashikhmin, coming)),
         has_ray_portals=any(map(has_ray_portals, coming)),
+        has_thin_film=any(map(has_thin_film, coming)),
         traces_rays=any(map(traces_rays, coming)),
         casts_rays=any(map(casts_rays, coming)),
     )

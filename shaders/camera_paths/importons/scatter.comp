@@ -5,6 +5,7 @@
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: HAIR_LOBES=1
 // lint: ASHIKHMIN_LOBES=1
+// lint: THIN_FILM_LOBES=1
 // lint: PORTALS=1
 // lint: TRANSPARENT_GLASS=1
 // lint: RAY_PORTALS=1

@@ -59,6 +59,8 @@ float lobe_shadowing(MicrofacetLobe lobe, uint smooth_normal, vec3 wi) {
                : 1.0;
 }
 
+#include "common/bsdf/film_lobes.glsl"
+
 vec3 lobe_normal(MicrofacetLobe lobe) { return unpack_unit_vector(lobe.normal); }
 
 // Reflectance and transmittance of a microfacet. Drivers without calls repeat the code of a function at each call, so
@@ -72,17 +74,24 @@ struct FacetFresnel {
 FacetFresnel facet_fresnel(MicrofacetLobe lobe, float cosine) {
     float reflectance = fresnel_dielectric(cosine, lobe.ior), f0 = normal_reflectance(lobe.ior);
     float rise = interpolation_of(reflectance, f0);
-    bool glass = lobe.kind == LOBE_GLASS, coated_glass = lobe.kind == LOBE_COATED_GLASS,
+    bool coated_glass = lobe.kind == LOBE_COATED_GLASS, glass = lobe.kind == LOBE_GLASS || coated_glass,
          passes = lobe.kind == LOBE_REFRACTION || lobe.kind == LOBE_SHEET;
     FacetFresnel fresnel = FacetFresnel(vec3(0.0), vec3(0.0), passes ? 0.0 : 1.0);
-    if (lobe.kind == LOBE_METAL) fresnel.reflectance = f82_reflectance(lobe.f0, lobe.tint, cosine);
+    if (lobe.kind == LOBE_METAL) fresnel.reflectance = f82_reflectance(abs(lobe.f0), lobe.tint, cosine);
+    else if (coated_glass) fresnel.reflectance = vec3(reflectance);
     else if (glass) fresnel.reflectance = tinted_reflectance(reflectance, f0, lobe.tint);
-    else if (coated_glass || lobe.kind == LOBE_DIELECTRIC)
-        fresnel.reflectance = mix(coated_glass ? lobe.tint : lobe.f0, vec3(1.0), rise);
+    else if (lobe.kind == LOBE_DIELECTRIC) fresnel.reflectance = mix(abs(lobe.f0), vec3(1.0), rise);
     else if (lobe.kind == LOBE_MIRROR || !lobe_has_facets(lobe.kind)) fresnel.reflectance = vec3(1.0);
     if (glass) fresnel.reflection_probability = reflectance;
-    else if (coated_glass) fresnel.reflection_probability = mix(clamp(largest(lobe.tint), 0.01, 0.99), 1.0, rise);
-    if (glass || coated_glass) fresnel.transmittance = lobe.f0 * (1.0 - fresnel.reflectance);
+    // Films, as hair. What adds lobes to closures takes them for bare where it estimates their albedo.
+#ifdef THIN_FILM_LOBES
+    if (lobe_has_film(lobe)) {
+        fresnel.reflectance = covered_reflectance(lobe, cosine);
+        if (glass && reflectance < 1.0)
+            fresnel.reflection_probability = clamp(largest(fresnel.reflectance), 0.01, 0.99);
+    }
+#endif
+    if (glass) fresnel.transmittance = lobe.f0 * (1.0 - fresnel.reflectance);
     else if (passes) fresnel.transmittance = lobe.weight;
     return fresnel;
 }

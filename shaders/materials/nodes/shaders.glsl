@@ -51,12 +51,9 @@ void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distributio
     if (distribution == 0) at.anisotropy |= BECKMANN;
     Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
     float relative = relative_ior(builder, valid_ior(ior));
-    MicrofacetLobe lobe;
-    if (film.thickness > THINNEST_FILM)
-        lobe = covered_glass_lobe(at, weighted, weighted, glass_film_reflectance(builder, at, film, valid_ior(ior)),
-                                  relative);
-    else lobe = glass_lobe(at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), relative, distribution == 2);
-    add_lobe(builder, lobe);
+    MicrofacetLobe lobe =
+        glass_lobe(at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), relative, distribution == 2);
+    add_lobe(builder, covered_glass_lobe(builder, lobe, film, valid_ior(ior)));
 }
 
 void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,
@@ -113,13 +110,13 @@ void node_bsdf_metallic(inout ClosureBuilder builder, float weight, int distribu
         edge = clamp(conductor_reflectance(cosine, n, k) / mix(f0, vec3(1.0), schlick_interpolation(cosine)), 0.0, 1.0);
     }
     Film film = Film(thin_film_thickness, max(thin_film_ior, 1e-3));
+    MicrofacetLobe lobe = metal_lobe(at, vec3(weight), f0, edge, distribution == 2, white_albedos(at));
     if (film.thickness > THINNEST_FILM) {
-        FilmMetal metal = metal_below_film(f0, edge, film.ior);
-        if (fresnel_type == 0) metal = FilmMetal(max(ior, 1e-3), max(extinction, 0.0), f0, edge, false);
-        f0 = covered_metal(at, film_reflectance(at, film, 1.0, 1.0, metal));
-        edge = vec3(1.0);
+        vec3 n = max(ior, 0.0);
+        if (fresnel_type == 0) lobe.tint = n / (1.0 + n);
+        lobe = covered_lobe(lobe, film, fresnel_type != 0);
     }
-    add_lobe(builder, metal_lobe(at, vec3(weight), f0, edge, distribution == 2, white_albedos(at)));
+    add_lobe(builder, lobe);
 }
 
 void node_bsdf_toon(inout ClosureBuilder builder, float weight, int component, vec3 color, float size, float smoothness,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Colors of glowing bodies and of single wavelengths, in the working space without negative parts.
 
-#include "materials/working_space.glsl"
+#include "common/working_space.glsl"
 
 // Planck's spectrum seen by the CIE 1931 observer, of luminance 1: quotients of polynomials in 1000 K / T,
 // fitted to 4.4e-4 over 800 K to 12000 K. Colder and hotter bodies look like those at the ends, as in Cycles.

@@ -66,7 +66,7 @@ def test_panels_show_every_setting(scene):
 
 def test_panels_are_named_and_shown_for_this_engine_only(scene):
     reports.record(scene.session_uid, report(warnings=("something",)))
-    contexts = dict.fromkeys(("light", "camera", "material", "world", "object"))
+    contexts = dict.fromkeys(("light", "camera", "volume", "material", "world", "object"))
     contexts |= {"world": set_world(scene), "material": new_material(), "object": add_mesh(scene)}
     scene.render.engine = "CYCLES"
     assert not drawn_panels(PANELS, context_of(scene, **contexts))
@@ -297,6 +297,18 @@ def test_many_lights_are_cut_short(scene):
         add_light(scene, "POINT", f"Light {number}")
     record = drawn(panels.lights.RPPM_PT_photon_allocation, context_of(scene))
     assert len(record.properties) == panels.lights.LIGHTS_SHOWN and "and 16 more" in record.labels
+
+
+def test_velocities_of_volume_objects_are_shown(scene):
+    """Blender's own Render panel, above, has Space alone."""
+    volume = bpy.data.volumes.new("Smoke")
+    records = drawn_panels(PANELS, context_of(scene, volume=volume))
+    assert records["RPPM_PT_volume_velocity"].properties == ["velocity_grid", "velocity_unit", "velocity_scale"]
+    above = getattr(bpy.types, panels.data.RPPM_PT_volume_velocity.bl_parent_id)
+    assert drawn(above, context_of(scene, volume=volume)).properties == ["space"]
+    assert "RPPM_PT_volume_velocity" not in drawn_panels(PANELS, context_of(scene))
+    scene.render.engine = "CYCLES"
+    assert "RPPM_PT_volume_velocity" not in drawn_panels(PANELS, context_of(scene, volume=volume))
 
 
 def test_presets_set_what_they_say(scene):

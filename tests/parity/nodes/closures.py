@@ -181,5 +181,7 @@ def by_closure(
         "normal": normal / np.linalg.norm(normal), "unused": 0,
     }  # fmt: skip
     defines = {"ASHIKHMIN_LOBES": 1} if options.get("distribution") == "ASHIKHMIN_SHIRLEY" else {}
+    if inputs.get("thin_film_thickness"):
+        defines["THIN_FILM_LOBES"] = 1
     results = run_shader(library, file, len(points), arrays, 4, values, defines)
     return results.reshape(-1, 4)[:, :3].astype(np.float64)

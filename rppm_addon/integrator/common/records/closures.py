@@ -41,7 +41,8 @@ class MicrofacetKind(enum.IntEnum):
     REFRACTION = 5
     """Refracts only, without Fresnel's loss."""
     COATED_GLASS = 6
-    """Glass whose reflectance at normal incidence is the tint."""
+    """Glass under a thin film; the tint is what the film is (common/bsdf/film_lobes.glsl, for METAL and DIELECTRIC as
+    well), which programs know where THIN_FILM_LOBES is defined."""
     SHEET = 7
     """Passes all through a sheet without thickness: a mirror's light, on the other side."""
     SHEEN = 8

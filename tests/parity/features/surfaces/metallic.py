@@ -14,4 +14,5 @@ def _metallic(inputs, **properties):
 
 lit(GROUP, "plain", _metallic({"Roughness": 0.3}))
 lit(GROUP, "thin film", _metallic(FILM))
+lit(GROUP, "thin film, rough", _metallic(FILM | {"Roughness": 0.6}))
 lit(GROUP, "thin film, F82", _metallic(FILM | {"Thin Film IOR": 1.6}, fresnel_type="F82"))

@@ -95,6 +95,7 @@ PRINCIPLED = {
         "Sheen Weight": 0.7, "Sheen Roughness": 0.3, "Sheen Tint": (1.0, 0.4, 0.2)},
     "emission": {"Emission Color": (1.0, 0.7, 0.3), "Emission Strength": 0.8},
     "thin film": {"Thin Film Thickness": 400.0, "Metallic": 1.0, "Roughness": 0.2},
+    "thin film, rough dielectric": {"Thin Film Thickness": 500.0, "Thin Film IOR": 1.8, "Roughness": 0.6},
     "subsurface": {"Subsurface Weight": 1.0, "Subsurface Scale": 0.02},
     "subsurface 0.6, skin": {"Subsurface Weight": 0.6, "Subsurface Scale": 0.2},
 }  # fmt: skip
