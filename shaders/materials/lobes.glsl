@@ -19,6 +19,9 @@ vec3 at_normal_incidence(vec3 reflectance, float rise) {
     return clamp((reflectance - rise) / max(1.0 - rise, 1e-3), 0.0, 1.0);
 }
 
+// Weight of such microfacets: less than 1 where the film reflects less than the curve at any reflectance.
+vec3 below_curve(vec3 reflectance, float rise) { return clamp(reflectance / max(rise, 1e-6), 0.0, 1.0); }
+
 // Where a node's microfacets lie: normal packed and unpacked, anisotropy packed, roughness of the mean alpha.
 struct Microfacets {
     vec3 normal;
@@ -129,8 +132,9 @@ MicrofacetLobe glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3
 
 // reflectance: of the film.
 MicrofacetLobe covered_glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3 reflectance, float relative) {
-    vec3 f0 = at_normal_incidence(reflectance, dielectric_interpolation(at.cosine, relative));
-    return microfacet_lobe(at, LOBE_COATED_GLASS, reflected, transmitted, f0, relative);
+    float rise = dielectric_interpolation(at.cosine, relative);
+    return microfacet_lobe(at, LOBE_COATED_GLASS, reflected * below_curve(reflectance, rise), transmitted,
+                           at_normal_incidence(reflectance, rise), relative);
 }
 
 vec3 glass_film_reflectance(ClosureBuilder builder, Microfacets at, Film film, float ior) {

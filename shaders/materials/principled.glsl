@@ -86,9 +86,10 @@ Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, fl
 
 MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, float ior, vec3 film, inout vec3 weight) {
     if (p.film.thickness > THINNEST_FILM) {
-        vec3 beside = at_normal_incidence(film, dielectric_interpolation(at.cosine, ior));
-        MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight, beside, vec3(1.0), ior);
-        weight = beneath(weight, film);
+        float rise = dielectric_interpolation(at.cosine, ior);
+        vec3 reflected = weight * p.specular_tint * below_curve(film, rise), beside = at_normal_incidence(film, rise);
+        MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, reflected, beside, vec3(1.0), ior);
+        weight = beneath(weight, film * p.specular_tint);
         return lobe;
     }
     if (f0 <= 0.0) return NO_LOBE;
@@ -170,7 +171,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
             thin_glass_lobes(builder, even, glass_weight, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
                              sheet);
         else if (film)
-            glass = covered_glass_lobe(even, glass_weight, glass_weight * refracted_color, films.glass, relative);
+            glass = covered_glass_lobe(even, glass_weight * p.specular_tint, glass_weight * refracted_color,
+                                       films.glass, relative);
         else
             glass = glass_lobe(even, glass_weight, glass_weight * refracted_color, p.specular_tint,
                                min(refracted_color, 1.0), relative, p.multiscatter);

@@ -88,7 +88,7 @@ vec3 thin_film_reflectance(float cosine, float thickness, float before, float fi
         // Half a wave where the amplitude changes its sign; reflected from within the film, the outer side turns it
         // over.
         vec3 shift = vec3(first[k] > 0.0 ? PI : 0.0) + phase;
-        vec3 both = clamp(outer * inner, 1e-5, 0.9999), repeated = transmitted * transmitted * inner / (1.0 - both),
+        vec3 both = min(outer * inner, 0.9999), repeated = transmitted * transmitted * inner / (1.0 - both),
              term = repeated - transmitted;
         sum += outer + repeated;
         for (int order = 1; order <= orders; ++order) {

@@ -63,3 +63,16 @@ def test_layers_that_light_comes_below(renderer, name):
     camera((0.0, -4.0, 1.2), (0.0, 0.0, 0.0), 25.0)
     exact = Tolerance(mean=0.001, block=0.002, mode=0.001)
     compare_with_cycles(renderer, f"layers_{name}", 64, exact, direct_light="RAYS", photons=256, iterations=32)
+
+
+@pytest.mark.parametrize("below", ["Transmission_Weight", "Specular_IOR_Level"])
+def test_films_have_the_specular_tint(renderer, below):
+    """A floor under a thin film, in which a sun is mirrored."""
+    new_scene()
+    tint, film = (0.9, 0.3, 0.6, 1.0), {"Thin_Film_Thickness": 280.0, "Thin_Film_IOR": 1.33}
+    floor = {"Base_Color": (0.25, 0.25, 0.25), "Roughness": 0.1, "Specular_Tint": tint, **film, below: 1.0}
+    plane(20.0, material(PRINCIPLED, **floor))
+    light("SUN", 1.0, place(turn=(-45.0, 0.0, 0.0)), angle=0.0)
+    camera((0.0, -4.0, 4.0), (0.0, 0.0, 0.0), 10.0)
+    near = Tolerance(mean=0.06, block=0.07, mode=0.07)  # the film's color is that of the angle of view
+    compare_with_cycles(renderer, f"film_{below}", 64, near, direct_light="RAYS", photons=256, iterations=32)
