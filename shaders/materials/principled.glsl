@@ -171,8 +171,8 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
             thin_glass_lobes(builder, even, glass_weight, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
                              sheet);
         else if (film)
-            glass = covered_glass_lobe(even, glass_weight * p.specular_tint, glass_weight * refracted_color,
-                                       films.glass, relative);
+            glass = covered_glass_lobe(even, glass_weight, glass_weight * refracted_color,
+                                       films.glass * p.specular_tint, relative);
         else
             glass = glass_lobe(even, glass_weight, glass_weight * refracted_color, p.specular_tint,
                                min(refracted_color, 1.0), relative, p.multiscatter);
