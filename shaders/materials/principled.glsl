@@ -78,7 +78,7 @@ Films film_reflectances(ClosureBuilder builder, Principled p, Microfacets at, fl
         if (!on_metal) metal = NO_METAL;
         vec3 reflectance = film_reflectance(at, p.film, before, behind, metal);
         if (on_metal) films.metal = reflectance;
-        else if (on_glass) films.glass = reflectance;
+        else if (on_glass) films.glass = reflectance * p.specular_tint;
         else films.base = reflectance;
     }
     return films;
@@ -171,8 +171,7 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
             thin_glass_lobes(builder, even, glass_weight, min(p.base_color, 1.0), p.specular_tint, p.film, p.ior, glass,
                              sheet);
         else if (film)
-            glass = covered_glass_lobe(even, glass_weight, glass_weight * refracted_color,
-                                       films.glass * p.specular_tint, relative);
+            glass = covered_glass_lobe(even, glass_weight, glass_weight * refracted_color, films.glass, relative);
         else
             glass = glass_lobe(even, glass_weight, glass_weight * refracted_color, p.specular_tint,
                                min(refracted_color, 1.0), relative, p.multiscatter);
