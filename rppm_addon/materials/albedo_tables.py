@@ -104,18 +104,22 @@ def _masking(alpha: float, wo_z: float, wi_z: np.ndarray) -> np.ndarray:
 
 
 def lobe_albedos(alpha: float, cosine: float, etas: np.ndarray, samples: int) -> tuple[float, np.ndarray, np.ndarray]:
-    """At one view cosine: albedo of the white mirror lobe; per eta, that of a mirror whose
-    reflectance goes from 0 to 1 as the dielectric's goes from normal to grazing; and per eta, the
-    albedo of glass (what is reflected and refracted to the right side)."""
+    """At one view cosine: albedo of the white mirror lobe; per eta, the interpolation between the
+    reflectances at normal and at grazing incidence that layers count with; and per eta, the albedo
+    of glass (what is reflected and refracted to the right side).
+
+    As in Cycles, the interpolation is the mean over the microfacets that the viewer sees, of which
+    those that reflect below the surface count as 0 and none is weighted by shadowing."""
     wo, h = visible_normals(alpha, cosine, _samples(samples))
     oh = h @ wo
     reflected_z = 2 * oh * h[:, 2] - wo[2]
-    mirror = np.where(reflected_z > 0, _masking(alpha, wo[2], reflected_z), 0.0)
+    reflects = reflected_z > 0
+    mirror = np.where(reflects, _masking(alpha, wo[2], reflected_z), 0.0)
     interpolations, glass = [], []
     for eta in etas:
         f = fresnel(oh, eta)
         f0 = ((eta - 1) / (eta + 1)) ** 2
-        interpolations.append(np.mean(np.clip((f - f0) / max(1 - f0, 1e-6), 0, 1) * mirror))
+        interpolations.append(np.mean(np.clip((f - f0) / max(1 - f0, 1e-6), 0, 1) * reflects))
         k = 1 - (1 - oh**2) / eta**2
         refracted_z = (oh / eta - np.sqrt(np.maximum(k, 0))) * h[:, 2] - wo[2] / eta
         passed = np.where((k > 0) & (refracted_z < 0), _masking(alpha, wo[2], refracted_z), 0.0)

@@ -23,3 +23,8 @@ class LightLinking:
     """Bits of the sets that its light shines on."""
     shadow_set_membership: int = field(default=ALL_SETS, metadata=declared(minimum=-(1 << 63), maximum=(1 << 63) - 1))
     """Bits of the sets that cast shadows in its light."""
+
+    @property
+    def lights_media(self) -> bool:
+        """True where its light shines on media, which count as objects that nobody names."""
+        return bool(self.light_set_membership & 1)

@@ -47,7 +47,7 @@ void add_lobe_color(inout LightColors colors, MicrofacetLobe lobe, vec3 viewer) 
         colors.glossy += lobe.weight * not_nothing(reflectance) * white_albedo(roughness, cosine);
     else {
         float white = white_albedo(roughness, cosine);
-        float rise = lobe.ior > 1.0 ? dielectric_grazing_albedo(lobe.ior, roughness, cosine) / white
+        float rise = lobe.ior > 1.0 ? dielectric_interpolation_of_facets(lobe.ior, roughness, cosine)
                                     : dielectric_interpolation(cosine, lobe.ior);
         vec3 f0 = kind == LOBE_DIELECTRIC ? lobe.f0 : lobe.tint * normal_reflectance(lobe.ior);
         float energy = kind == LOBE_DIELECTRIC ? white : max(glass_albedo(lobe.ior, roughness, cosine), 0.05);

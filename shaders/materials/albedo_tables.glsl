@@ -44,8 +44,8 @@ float glass_average_albedo(float ior, float roughness) {
                        ior_place(enters ? ior : 1.0 / ior), roughness);
 }
 
-// Albedo of a lobe whose reflectance is dielectric_interpolation: what grazing incidence adds.
-float dielectric_grazing_albedo(float ior, float roughness, float cosine) {
+// The interpolation between the reflectances at normal and at grazing incidence, for all facets that the viewer sees.
+float dielectric_interpolation_of_facets(float ior, float roughness, float cosine) {
     return table_volume(DIELECTRIC_TABLE, ior, roughness, cosine);
 }
 

@@ -33,16 +33,22 @@ float index_from_reflectance(float f0) {
 // Light left below a layer.
 vec3 beneath(vec3 weight, vec3 albedo) { return weight * clamp(1.0 - largest(albedo), 0.0, 1.0); }
 
+// Albedo of microfacets that reflect f0 at normal incidence, had they no energy to lose.
+vec3 dielectric_albedo(float ior, float roughness, float cosine, vec3 f0) {
+    return mix(f0, vec3(1.0), dielectric_interpolation_of_facets(ior, roughness, cosine));
+}
+
 MicrofacetLobe coat_lobe(ClosureBuilder builder, Principled p, inout vec3 weight) {
     float ior = max(p.coat_ior, 1.0);
     Microfacets at = isotropic_microfacets(builder, p.coat_normal, p.coat_roughness);
     float f0 = normal_reflectance(ior);
     MicrofacetLobe lobe = NO_LOBE;
     if (ior > 1.0) {
-        lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat, vec3(f0), vec3(1.0), ior);
-        float albedo = mix(dielectric_grazing_albedo(ior, p.coat_roughness, at.cosine),
-                           white_albedo(p.coat_roughness, at.cosine), f0);
-        if (!builder.is_bare) weight = beneath(weight, vec3(p.coat * albedo));
+        vec2 whites = white_albedos(at);
+        vec3 factor = multiscatter_factor(whites, vec3(average_reflectance(ior)));
+        lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * p.coat * factor, vec3(f0), vec3(1.0), ior);
+        vec3 albedo = factor * whites.x * dielectric_albedo(ior, p.coat_roughness, at.cosine, vec3(f0));
+        if (!builder.is_bare) weight = beneath(weight, p.coat * albedo);
     }
     // Absorbed along the refracted way through the coat, which is of length 1 at normal incidence.
     float inside = sqrt(max(1.0 - (1.0 - at.cosine * at.cosine) / (ior * ior), 1e-6));
@@ -61,9 +67,7 @@ MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, fl
     bool film = p.film.thickness > THINNEST_FILM;
     if (f0 <= 0.0 && !film) return NO_LOBE;
     vec3 tinted = min(f0 * p.specular_tint, vec3(1.0));
-    float white = white_albedo(p.roughness, at.cosine);
-    float grazing = dielectric_grazing_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine) / white;
-    vec3 factor = vec3(1.0), albedo = mix(tinted, vec3(1.0), grazing);
+    vec3 factor = vec3(1.0), albedo = dielectric_albedo(max(ior, 1.0 / ior), p.roughness, at.cosine, tinted);
     if (film) {
         // As in Cycles, by the angle of the viewer to the normal.
         vec3 reflectance = thin_film_reflectance(at.cosine, p.film.thickness, 1.0, p.film.ior, ior, NO_METAL);
@@ -72,7 +76,7 @@ MicrofacetLobe base_lobe(Principled p, Microfacets at, vec2 whites, float f0, fl
     if (p.multiscatter) {
         float base = normal_reflectance(ior);
         factor = multiscatter_factor(whites, mix(tinted, vec3(1.0), (average_reflectance(ior) - base) / (1.0 - base)));
-        albedo *= factor * white;
+        albedo *= factor * whites.x;
     }
     MicrofacetLobe lobe = microfacet_lobe(at, LOBE_DIELECTRIC, weight * factor, tinted, vec3(1.0), ior);
     if (film) lobe = covered_lobe(lobe, p.film, false);

@@ -92,6 +92,25 @@ def test_light_that_a_surface_has_reflected_is_scattered(renderer):
     assert _shine(renderer, scene).mean() > 1.5 * reflected.mean()
 
 
+@MODES
+def test_a_lamp_that_is_linked_to_some_objects_lights_no_medium(renderer, mode):
+    """Media count as objects that no light names, as in Cycles."""
+    for membership, lights in ((0b10, False), (0b11, True)):
+        linked = dataclasses.replace(_lamp(RayVisibility.ALL), linking=LightLinking(light_set_membership=membership))
+        assert (_shine(renderer, _scene(mode, lights=[linked])).max() > 0.0) == lights
+
+
+@MODES
+def test_a_surface_that_is_linked_to_some_objects_lights_no_medium(renderer, mode):
+    for membership, lights in ((0b10, False), (0b11, True)):
+        scene = _scene(mode)
+        scene.materials.append(material("glow", Lobe(LobeKind.EMISSION, color=(5.0, 5.0, 5.0))))
+        scene.meshes.append(scenes.square("lamp", 0.5))
+        linking = LightLinking(light_set_membership=membership)
+        scene.instances.append(Instance(1, scenes.placed(0.0, 0.0, 1.5), [1], linking=linking))
+        assert (_shine(renderer, scene).max() > 0.0) == lights
+
+
 def test_light_linking_of_volumes_is_warned_of(renderer):
     scene = _scene(DirectLight.RAYS, lights=[_lamp(RayVisibility.ALL)])
     renderer.render(scene)

@@ -57,7 +57,7 @@ def test_stored_tables_are_those_that_the_module_computes():
     stored = tables.load()
     size, cube = tables.WHITE_SIZE, tables.SIZE
     white = stored[: size * size].reshape(size, size)
-    glass = stored[size * size + size + cube**3 :][: cube**3].reshape(cube, cube, cube)
+    dielectric, glass = stored[size * size + size :][: 2 * cube**3].reshape(2, cube, cube, cube)
     assert len(stored) == size * size + size + 3 * cube**3 + 3 * size * size + 2 * cube * cube
     rng = np.random.default_rng(0)
     for r, c in rng.integers(1, size, (6, 2)):
@@ -65,5 +65,6 @@ def test_stored_tables_are_those_that_the_module_computes():
         assert white[r, c] == pytest.approx(value, abs=1e-5)
     for z, r, c in rng.integers(1, cube, (4, 3)):
         eta = np.array([tables.index_of(z / (cube - 1))])
-        value = tables.lobe_albedos((r / (cube - 1)) ** 2, c / (cube - 1), eta, tables.SAMPLES)[2][0]
-        assert glass[z, r, c] == pytest.approx(value, abs=1e-5)
+        _, interpolation, whole = tables.lobe_albedos((r / (cube - 1)) ** 2, c / (cube - 1), eta, tables.SAMPLES)
+        assert dielectric[z, r, c] == pytest.approx(interpolation[0], abs=1e-5)
+        assert glass[z, r, c] == pytest.approx(whole[0], abs=1e-5)

@@ -63,7 +63,8 @@ class EmissiveMaterials:
         no emission that depends on the path that comes there."""
         seen = is_seen_reflected(instance)
         traits = int(EmitterTrait.REFLECTED) * (seen & np.isin(kinds, self._by_path, invert=True))
-        if not instance.visibility & RayVisibility.VOLUME_SCATTER:
+        links_leave_out_media = instance.linking is not None and not instance.linking.lights_media
+        if links_leave_out_media or not instance.visibility & RayVisibility.VOLUME_SCATTER:
             traits += int(EmitterTrait.HIDDEN_FROM_MEDIA)
         return traits
 

@@ -85,6 +85,21 @@ def test_other_trees_are_read_as_they_are(scene, material):
     assert readable_tree(material).owner is not None
 
 
+def test_an_output_in_a_group_counts_where_the_tree_has_none(scene, material):
+    tree = material.node_tree
+    tree.nodes.clear()
+    _, group = add_group(tree)
+    glow = add_node(group, "ShaderNodeEmission", Color=(1.0, 0.0, 0.0, 1.0))
+    inside = add_node(group, "ShaderNodeOutputMaterial")
+    group.links.new(glow.outputs[0], inside.inputs["Surface"])
+    add_mesh(scene, material=material)
+    assert emitted(scene)["color"] == (1.0, 0.0, 0.0)
+    outside, other = add_node(tree, "ShaderNodeOutputMaterial"), add_node(tree, "ShaderNodeEmission")
+    other.inputs["Color"].default_value = (0.0, 1.0, 0.0, 1.0)
+    tree.links.new(other.outputs[0], outside.inputs["Surface"])
+    assert emitted(scene)["color"] == (0.0, 1.0, 0.0)
+
+
 def test_edits_and_animation_are_seen(scene, material, tree):
     switch = menu_switch(tree)
     first, last = repeat_zone(tree, 2)

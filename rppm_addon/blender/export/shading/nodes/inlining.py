@@ -2,7 +2,8 @@
 """Trees with repeat zones, closures, bundles and menu switches, of which Blender makes plain nodes.
 
 Blender 5 evaluates such nodes itself, for Cycles as for others: what it hands out has neither groups nor reroutes,
-zones are unrolled, and numbers that nothing varies are computed. Trees without them are read as the user built them.
+zones are unrolled, and numbers that nothing varies are computed. So are trees whose output node is in a group. Trees
+without any of these are read as the user built them.
 """
 
 import re
@@ -55,7 +56,7 @@ def readable_tree(owner: bpy.types.Material | bpy.types.World | bpy.types.Light)
         return None
     plain = ReadableTree(tree)
     blender = getattr(bpy.types, "InlineShaderNodes", None)  # none before Blender 5, as are such nodes
-    if blender is None or not any(_needs_blender(node) for node in _all_nodes(tree, set())):
+    if blender is None or (plain.output and not any(_needs_blender(node) for node in _all_nodes(tree, set()))):
         return plain
     if isinstance(owner, bpy.types.Material):
         inlined = blender.from_material(owner)
