@@ -4,7 +4,7 @@
 #include TRAVERSAL
 #include "common/geometry.glsl"
 #include "materials/medium.glsl"
-#include MEDIUM_HITS "media/one_level/hits.glsl"
+#include HITS "media/one_level/hits.glsl"
 
 // Of surfaces behind one another, those up to here count: llvmpipe ends loops of a thread after 65535 rounds in all.
 const int MOST_CROSSINGS = 64;

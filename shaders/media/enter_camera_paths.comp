@@ -3,8 +3,8 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl MEDIA=1
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
 // lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
-// lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1 MEDIUM_HITS=media/two_levels
-// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1 MEDIUM_HITS=media/two_levels
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1 HITS=media/two_levels
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1 HITS=media/two_levels
 // The media that camera paths begin in: those at the camera, and what lies on the way from there to where each ray
 // begins. Texels have no camera: their paths come to the surface from before it, and those to the world from nowhere.
 

@@ -3,8 +3,8 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl MEDIA=1
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
 // lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
-// lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1 MEDIUM_HITS=media/two_levels
-// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1 EMISSIVE_MEDIA=1 MEDIUM_HITS=media/two_levels
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1 HITS=media/two_levels
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1 EMISSIVE_MEDIA=1 HITS=media/two_levels
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1 EMISSIVE_MEDIA=1
 // The media that photons begin in: those at the middle of their light, and what lies on the way from there to where
 // each leaves it. Emissive meshes have no middle; around suns and the world there is nothing. Photons of media that

@@ -3,8 +3,8 @@
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl MEDIA=1
 // lint: TRAVERSAL=deep_cubemap/traverse.glsl TEXEL_BUFFERS=1 MEDIA=1
 // lint: TRAVERSAL=bvh/traverse.glsl MEDIA=1
-// lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1 MEDIUM_HITS=media/two_levels
-// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1 MEDIUM_HITS=media/two_levels
+// lint: TRAVERSAL=bvh/traverse_two_levels.glsl MEDIA=1 HITS=media/two_levels
+// lint: TRAVERSAL=deep_cubemap/traverse_two_levels.glsl TEXEL_BUFFERS=1 MEDIA=1 HITS=media/two_levels
 // The media at the middle of each light object, and behind them at the camera.
 
 layout(local_size_x = 64) in;

@@ -109,7 +109,7 @@ class Media(Stage):
         return {**context.blocks, **context.geometry.mesh_blocks}
 
     def _compile(self, kernel: str, context: StageContext) -> ComputeProgram:
-        hits = {"MEDIUM_HITS": "media/two_levels"} if context.acceleration.has_instances else {}
+        hits = {"HITS": "media/two_levels"} if context.acceleration.has_instances else {}
         return self._library.compute(kernel, context.acceleration.lean_traversal_defines | self._defines | hits)
 
     def _parameters(self, context: StageContext) -> dict[str, object]:
