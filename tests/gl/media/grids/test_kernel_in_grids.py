@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The kernel of photons around points in a grid: beyond a surface that ends the medium there are no photons, whether the
-grid goes on behind it or ends there as well."""
+"""The kernel of photons around points in a grid: beyond a surface that ends the medium there are no photons, whether
+the grid goes on behind it or ends there as well."""
 
 from pathlib import Path
 
