@@ -189,11 +189,17 @@ vec3 segment_transmittance(uint flags, vec3 origin, vec3 direction, float distan
     return exp(-segment_thickness(flags, origin, direction, distance));
 }
 
-// Whether a medium of a path scatters light anywhere.
-bool path_may_scatter(uint flags) {
+// The sum over the media of a path of their scattering coefficients where they are densest.
+vec3 most_scattering(uint flags) {
     vec3 sum = media[0].scattering;
     uint bits = medium_bits();
     for (uint set = flags >> FIRST_MEDIUM; set != 0u;) sum += media[next_medium(set, bits)].scattering;
+    return sum;
+}
+
+// Whether a medium of a path scatters light anywhere.
+bool path_may_scatter(uint flags) {
+    vec3 sum = most_scattering(flags);
     return max(sum.x, max(sum.y, sum.z)) > 0.0;
 }
 

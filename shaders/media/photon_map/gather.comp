@@ -155,9 +155,10 @@ void main() {
         ++cells;
     }
     radius = crowded_radius(radius, float(found) / float(cells));
+    MediumVertex segment = medium_vertices[index];
     if (has_any_grid(path.flags))
-        point.weight *= scattering_over_mean(path.flags, point.position, ray.direction, point.scattering, radius);
-    else point.weight /= 1.0 - kernel_beyond_surfaces(ray, medium_vertices[index], point.at.distance, radius);
+        point.weight *= scattering_over_mean(path.flags, ray, segment, point.at.distance, point.scattering, radius);
+    point.weight /= 1.0 - kernel_beyond_surfaces(ray, segment, point.at.distance, radius);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
     uint passed = 0u, corner = 0u, next = ranges[0].x;
     bool any = false;

@@ -36,14 +36,27 @@ float kernel_beyond_surfaces(Ray ray, MediumVertex segment, float distance, floa
 // Most that the density at a point is raised over the kernel's mean.
 const float MOST_RISE = 3.0;
 
-// The scattering coefficient at a point over its mean in the kernel, by channel. Points at the cube's corners have the
-// kernel's second moment.
-vec3 scattering_over_mean(uint flags, vec3 position, vec3 direction, vec3 scattering, float radius) {
+// A point beyond a plane, mirrored to this side of it. depth: of the point on this side, meters; normal: of the plane.
+vec3 mirrored_inside(vec3 point, vec3 normal, float depth) {
+    return depth < 0.0 ? point - 2.0 * depth * normal : point;
+}
+
+// The scattering coefficient at a point of a segment over its mean in the part of the kernel that lies in the media, by
+// channel. Points at the cube's corners have the kernel's second moment; those beyond the surfaces at which the media
+// end are mirrored.
+vec3 scattering_over_mean(uint flags, Ray ray, MediumVertex segment, float distance, vec3 scattering, float radius) {
     const float CORNER = 0.37796447;  // sqrt(1 / 7)
-    vec3 mean = vec3(0.0);
+    vec3 mean = vec3(0.0), position = ray.origin + distance * ray.direction;
+    vec3 near = unpack_unit_vector(segment.near_normal), far = unpack_unit_vector(segment.far_normal);
+    near *= dot(near, ray.direction) < 0.0 ? -1.0 : 1.0;
+    far *= dot(far, ray.direction) < 0.0 ? 1.0 : -1.0;
+    float near_height = segment.near_height + dot(near, ray.direction) * distance,
+          far_height = -dot(far, ray.direction) * (segment.far - distance);
     for (uint k = 0u; k < 8u; ++k) {
-        vec3 corner = vec3(k & 1u, (k >> 1u) & 1u, k >> 2u) * 2.0 - 1.0;
-        mean += path_medium(flags, PlaceOnRay(position + CORNER * radius * corner, direction, 0.0)).scattering;
+        vec3 corner = CORNER * radius * (vec3(k & 1u, (k >> 1u) & 1u, k >> 2u) * 2.0 - 1.0);
+        if (segment.near_loss > 0.0) corner = mirrored_inside(corner, near, near_height + dot(corner, near));
+        if (segment.far_loss > 0.0) corner = mirrored_inside(corner, far, far_height + dot(corner, far));
+        mean += path_medium(flags, PlaceOnRay(position + corner, ray.direction, 0.0)).scattering;
     }
     return clamp(scattering / max(mean / 8.0, vec3(1e-30)), vec3(0.0), vec3(MOST_RISE));
 }

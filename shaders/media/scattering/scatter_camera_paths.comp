@@ -42,9 +42,10 @@ bool may_scatter(CameraPath path) {
            && !is_thin(path.flags, parameters.least_free_path);
 }
 
-// The fraction of the scattering of the media of a path that other media beyond a surface do not have.
+// The fraction of the scattering of the media of a path that other media beyond a surface do not have, where they are
+// densest.
 float scattering_loss(uint flags, uint beyond) {
-    float here = dot(even_medium(flags).scattering, vec3(1.0)), there = dot(even_medium(beyond).scattering, vec3(1.0));
+    float here = dot(most_scattering(flags), vec3(1.0)), there = dot(most_scattering(beyond), vec3(1.0));
     return here > 0.0 ? clamp(1.0 - there / here, 0.0, 1.0) : 0.0;
 }
 
