@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...scene.light_linking import LightLinking
-from ...scene.meshes import Instance
+from ...scene.meshes import Instance, RayVisibility
 from ...scene.storage.sharing import changed_members
 
 
@@ -59,6 +59,12 @@ class InstanceColumns:
             self.matrices[rows] = np.array([instance.matrix for instance in some], np.float64)
         self._instances = list(instances)
         return rows
+
+    @property
+    def mirrors_see_others(self) -> bool:
+        """True where glossy rays see some instances that stop no shadow rays, or the other way round."""
+        both = self.visibility & (RayVisibility.SHADOW | RayVisibility.GLOSSY)
+        return bool(((both == RayVisibility.SHADOW) | (both == RayVisibility.GLOSSY)).any())
 
     def have(self, materials: set[int]) -> np.ndarray:
         """(n,) bool, the instances with any of these materials."""

@@ -44,6 +44,7 @@ ITERATION_PARAMETERS = Record(
     final_gather="uint",
     next_event="uint",
     has_round_shapes="uint",
+    mirrors_see_others="uint",
     orthographic_camera="uint",
     most_transparent="float",
     shrinkage="float",
@@ -53,7 +54,8 @@ ITERATION_PARAMETERS = Record(
 
 ``number``, ``number_in_film`` and ``seed`` are those of Iteration. ``photon_flux`` is the mean
 flux of all photons, W. ``limits_bounces`` tells whether any light has bounce limits of its own, ``next_event`` whether
-shadow rays bring direct light. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, or members that the
+shadow rays bring direct light, ``mirrors_see_others`` whether glossy rays see what stops no shadow rays, or the other
+way round. ``shrinkage`` is r_i / r_1 of Eq. 2. The other members are settings, or members that the
 lights and the radii declare. ``most_transparent`` is how much a surface may transmit that passes show.
 """
 
@@ -88,6 +90,7 @@ class IterationBlock(BufferSet):
             "final_gather": settings.use_final_gather,
             "next_event": settings.direct_light is DirectLight.RAYS,
             "has_round_shapes": geometry.has_round_shapes,
+            "mirrors_see_others": geometry.columns.mirrors_see_others,
             "orthographic_camera": scene.camera.orthographic and scene.camera.panorama is None,
             "most_transparent": 1.0 - scene.pass_alpha_threshold if scene.pass_alpha_threshold > 0.0 else np.inf,
             "shrinkage": shrinkage(max(iteration.number, 1), settings.alpha),

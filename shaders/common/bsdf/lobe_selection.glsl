@@ -61,10 +61,13 @@ float selection_probability(float weight, LobeSelection selection) {
 }
 
 // Whether a smooth lobe reflects so seldom that a shadow ray looks for light objects along its reflection: paths that
-// go there would find them seldom, and then very bright. weight, total: of the selection. alpha: up to which lobes are
+// go there would find them seldom, and then very bright. Where mirrors see other objects than stop shadow rays, no such
+// ray stands for a path that is reflected. weight, total: of the selection. alpha: up to which lobes are
 // smooth.
 bool looks_for_reflected_lights(MicrofacetLobe lobe, float weight, float total, vec3 wo, float alpha) {
-    if (!lobe_is_specular(lobe, alpha) || !lobe_has_facets(lobe.kind) || !(weight > 0.0)) return false;
+    if (iteration.mirrors_see_others != 0u || !lobe_is_specular(lobe, alpha) || !lobe_has_facets(lobe.kind)
+        || !(weight > 0.0))
+        return false;
     float probability = facet_fresnel(lobe, lobe_cosine(lobe, wo)).reflection_probability;
     return probability > 0.0 && weight * probability < 0.5 * total;
 }
