@@ -107,9 +107,10 @@ MicrofacetLobe glass_lobe(Microfacets at, vec3 reflected, vec3 transmitted, vec3
 }
 
 // ior: of the glass, to which indices are relative where the film is seen from within. As in Cycles it seems thinner
-// there, by that index.
-MicrofacetLobe covered_glass_lobe(ClosureBuilder builder, MicrofacetLobe lobe, Film film, float ior) {
+// there, by that index. tint: of what the film reflects.
+MicrofacetLobe covered_glass_lobe(ClosureBuilder builder, MicrofacetLobe lobe, Film film, float ior, vec3 tint) {
     if (film.thickness <= THINNEST_FILM) return lobe;
+    lobe.weight *= tint;
     if (builder.backfacing) film.ior /= ior;
     return covered_lobe(lobe, film, false);
 }

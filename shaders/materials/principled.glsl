@@ -152,8 +152,7 @@ void add_principled(inout ClosureBuilder builder, float node_weight, Principled 
         else {
             glass = glass_lobe(even, glass_weight, glass_weight * refracted_color, p.specular_tint,
                                min(refracted_color, 1.0), relative, p.multiscatter);
-            if (film) glass.weight *= p.specular_tint;
-            glass = covered_glass_lobe(builder, glass, p.film, p.ior);
+            glass = covered_glass_lobe(builder, glass, p.film, p.ior, p.specular_tint);
         }
         weight *= 1.0 - p.transmission;
     }

@@ -41,8 +41,8 @@ StorageBlock(
     "uint medium_photon_count; uint straight_photon_count; uint direct_photon_count; uint medium_photons_unused; "
     "uint medium_photons[];",
 )
-"""Numbers of the photons that media have scattered, and how many of them nothing but specular surfaces had scattered
-before; and how many others came straight from a light, which shadow rays stand for."""
+"""Numbers of the photons that media have scattered, and how many of them nothing but surfaces that store no photons had
+scattered before; and how many others came straight from a light, which shadow rays stand for."""
 
 _EXPECTED_PHOTONS = 8
 """Photons in the kernel of the first iteration, where they lie evenly in the media."""
@@ -55,7 +55,7 @@ _FREE_PATHS = 0.7
 """Radius of the first iteration in dense media, mean free paths."""
 Constants("MediumPhotonKernel", signed=True, WIDEST=_WIDEST_KERNEL)
 _MOST_STRAIGHT = 0.25
-"""Fraction of the photons that come to media straight or by specular surfaces alone which may have come by the latter
+"""Fraction of the photons that come to media straight or by surfaces that store none which may have come by the latter
 where camera paths are scattered: they find no such light."""
 _CANDIDATES = 30_000
 """Photons that a thread looks at: llvmpipe ends the loops of a thread after 65535 rounds."""

@@ -53,7 +53,7 @@ void node_bsdf_glass(inout ClosureBuilder builder, float weight, int distributio
     float relative = relative_ior(builder, valid_ior(ior));
     MicrofacetLobe lobe =
         glass_lobe(at, weighted, weighted, vec3(1.0), clamp(color, 0.0, 1.0), relative, distribution == 2);
-    add_lobe(builder, covered_glass_lobe(builder, lobe, film, valid_ior(ior)));
+    add_lobe(builder, covered_glass_lobe(builder, lobe, film, valid_ior(ior), vec3(1.0)));
 }
 
 void node_bsdf_refraction(inout ClosureBuilder builder, float weight, int distribution, vec3 color, float roughness,

@@ -63,10 +63,10 @@ struct GatherPoint {
     bool takes_all;  // photons, or only those that have come straight to the medium
 };
 
-// Whether nothing but specular surfaces has scattered a photon before.
+// Whether no medium and no surface that stores photons has scattered a photon before. What other lobes sent straight
+// from a light to the point, its final gather does not look for.
 bool has_come_straight(uint photon) {
-    return medium_count(photons[photon].bounce_counts) == 0u
-           && is_light_direct(photons[photon].flags, photons[photon].depth);
+    return medium_count(photons[photon].bounce_counts) == 0u && (photons[photon].flags & PHOTON_INDIRECT) == 0u;
 }
 
 // Radiance that a photon adds.

@@ -10,7 +10,6 @@ layout(local_size_x = 64) in;
 #include "common/invocation.glsl"
 #include "common/photon.glsl"
 #include "common/path_depth.glsl"
-#include "common/volume_bounces.glsl"
 uniform Parameters { ListMediumPhotonsParameters parameters; };
 readonly buffer Photons;
 readonly buffer PhotonRange;
@@ -24,7 +23,7 @@ void main() {
         return;
     }
     bool is_straight =
-        medium_count(photons[index].bounce_counts) == 0u && is_light_direct(photons[index].flags, photons[index].depth);
+        medium_count(photons[index].bounce_counts) == 0u && (photons[index].flags & PHOTON_INDIRECT) == 0u;
     if (is_straight) atomicAdd(straight_photon_count, 1u);
     medium_photons[atomicAdd(medium_photon_count, 1u)] = index;
 }
