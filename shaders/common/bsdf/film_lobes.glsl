@@ -2,6 +2,8 @@
 // Lobes under a thin film, as closures keep them: bare ones with the film in members that they do without, its tint or
 // a metal's index. Where f0.x is negative a film lies on metals and dielectrics; on glass the kind says so.
 
+#include "common/half.glsl"
+
 // For programs of scenes with films, and for those that add lobes to closures, which say so beforehand.
 #if defined(THIN_FILM_LOBES) || defined(ADDS_LOBES)
 
@@ -14,12 +16,12 @@ struct Film {
 
 // Thickness as a half float without its sign, and an index that is anything from 0 on.
 uint packed_film(Film film) {
-    uint thickness = packHalf2x16(vec2(min(film.thickness, 65000.0), 0.0)) & 0x7fffu;
+    uint thickness = float_to_half(min(film.thickness, 65000.0));
     return thickness << 13u | uint(8191.0 * film.ior / (1.0 + film.ior) + 0.5);
 }
 Film unpacked_film(uint word) {
     float part = float(word & 8191u) / 8191.0;
-    return Film(unpackHalf2x16(word >> 13u).x, part / max(1.0 - part, 1e-4));
+    return Film(half_to_float(word >> 13u), part / max(1.0 - part, 1e-4));
 }
 
 // The 28 bits as a float from 2^-16 to 2^16.
