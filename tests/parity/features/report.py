@@ -116,8 +116,8 @@ UNNAMED = (
         "what camera rays and final gathers find of it counts for the group of one of them",
     ),
     (
-        "Thin films on rough surfaces",
-        "their color is that of the angle of view, not of each microfacet: up to 7 % of a channel at roughness 0.7",
+        "Thin films on glass with a Specular Tint",
+        "tinted at all angles, in Cycles less at grazing ones; what passes the film is not tinted the other way round",
     ),
     (
         "Volume Scatter, in the Ray Visibility of what neither emits light nor is the world",
