@@ -113,26 +113,28 @@ class Slices:
 
         Raises Unfinished until it is done, or what ``compute`` raises.
         """
-        if name not in record:
-            record[name] = _Job(compute) if self.are_limited else compute()
-        if isinstance(job := record[name], _Job):
-            # Waiting here, not in a loop of slices, leaves the processor to the thread.
-            if not job.wait(max(self._began + self._seconds - time.monotonic(), 0.0)):
-                raise Unfinished
-            del record[name]
-            record[name] = job.result()
+        if name not in record and not self.are_limited:
+            record[name] = compute()
+        # Waiting here, not in a loop of slices, leaves the processor to the thread.
+        if not _is_done(record, name, compute, max(self._began + self._seconds - time.monotonic(), 0.0)):
+            raise Unfinished
         return record[name]
 
     def computed_so_far(self, record: dict[Hashable, Any], name: Hashable, compute: Callable[[], Any]) -> Any:
         """As computed(), but None until it is done: the export goes on with something else meanwhile."""
-        if name not in record:
-            record[name] = _Job(compute)
-        if isinstance(job := record[name], _Job):
-            if not job.wait(0.0):
-                return None
-            del record[name]
-            record[name] = job.result()
-        return record[name]
+        return record[name] if _is_done(record, name, compute, 0.0) else None
+
+
+def _is_done(record: dict[Hashable, Any], name: Hashable, compute: Callable[[], Any], seconds: float) -> bool:
+    """Have a thread compute what a record lacks, wait so long for it, and return whether the record has it now."""
+    if name not in record:
+        record[name] = _Job(compute)
+    if isinstance(job := record[name], _Job):
+        if not job.wait(seconds):
+            return False
+        del record[name]
+        record[name] = job.result()
+    return True
 
 
 class _Job:
