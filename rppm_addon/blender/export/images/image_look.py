@@ -56,7 +56,7 @@ class ImageLook:
 
     @property
     def needs_blender(self) -> bool:
-        """Whether Blender is asked to convert its colors."""
+        """True where Blender is asked to convert its colors."""
         return not (self.is_float or self.is_linear or self.is_srgb)
 
 
@@ -101,7 +101,7 @@ def _bytes(pixels: np.ndarray) -> np.ndarray:
 
 
 def is_associated(image: bpy.types.Image | None) -> bool:
-    """Whether an image's colors come multiplied by its alpha, and are divided by it where alpha is used as well."""
+    """Return True where colors come multiplied by alpha, and are divided by it where alpha is used as well."""
     return (
         image is not None
         and image.alpha_mode in {"STRAIGHT", "PREMUL"}

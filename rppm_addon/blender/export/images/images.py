@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from ....materials.images import MISSING as MISSING_IMAGE
 from ....scene.common.whole_files import is_no_file
 from ....scene.images import Image
 from ..common.slices import Slices
@@ -119,7 +120,7 @@ class ImageTable:
             exported = self._pixels(image, load, record, selection)
             if isinstance(exported, LateImage):
                 self._late[len(self.images)] = _Place(image.session_uid, selection), exported
-                exported = _NOT_YET
+                exported = MISSING_IMAGE  # until it is read; it stays where Blender has lost its pixels meanwhile
             del self._unfinished[key]
             if exported is None:
                 self._indices[key] = MISSING
@@ -249,8 +250,6 @@ def _is_no_file(path: str, image: bpy.types.Image) -> bool:
 
 MISSING = -1
 """Stands for an image without pixels; it is magenta."""
-_NOT_YET = Image("missing", np.array([[[255, 0, 255, 255]]], np.uint8), "LINEAR")
-"""Magenta, in the place of a large image until that is read, and where Blender has lost its pixels meanwhile."""
 
 
 def frame_of(user: bpy.types.ImageUser, scene_frame: int) -> int:
