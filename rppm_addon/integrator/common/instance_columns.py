@@ -26,6 +26,8 @@ class InstanceColumns:
         """Different materials of the slots of instances."""
         self.visibility = np.zeros(0, np.int64)
         """(n,) the RayVisibility of each."""
+        self.mirrors_see_others = False
+        """True where glossy rays see some instances that stop no shadow rays, or the other way round."""
         self.sets = np.zeros(0, np.int64)
         """(n,) the sets of lights that shine on each, and of shadows that it stops, in the lower bits of codes."""
         self.are_linked, self.catch_shadows = np.zeros((2, 0), bool)
@@ -50,6 +52,8 @@ class InstanceColumns:
         some = instances if len(rows) == count else [instances[row] for row in rows.tolist()]
         self.meshes[rows] = column(some, "mesh", np.int64)
         self.visibility[rows] = column(some, "visibility", np.int64)
+        both = self.visibility & (RayVisibility.SHADOW | RayVisibility.GLOSSY)
+        self.mirrors_see_others = bool(np.isin(both, (RayVisibility.SHADOW, RayVisibility.GLOSSY)).any())
         self.sets[rows] = column(some, "linking", np.int64, _packed_sets)
         self.are_linked[rows] = column(some, "linking", bool, lambda linking: linking is not None)
         self.catch_shadows[rows] = column(some, "shadow_catcher", bool)
@@ -59,12 +63,6 @@ class InstanceColumns:
             self.matrices[rows] = np.array([instance.matrix for instance in some], np.float64)
         self._instances = list(instances)
         return rows
-
-    @property
-    def mirrors_see_others(self) -> bool:
-        """True where glossy rays see some instances that stop no shadow rays, or the other way round."""
-        both = self.visibility & (RayVisibility.SHADOW | RayVisibility.GLOSSY)
-        return bool(((both == RayVisibility.SHADOW) | (both == RayVisibility.GLOSSY)).any())
 
     def have(self, materials: set[int]) -> np.ndarray:
         """(n,) bool, the instances with any of these materials."""
