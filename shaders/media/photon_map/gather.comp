@@ -44,6 +44,7 @@ readonly buffer Buckets;
 readonly buffer SortedPhotons;
 
 #include "media/photon_map/kernel.glsl"
+#include "media/photon_map/straight_photons.glsl"
 
 #include <MediumPhotonKernel>
 
@@ -62,12 +63,6 @@ struct GatherPoint {
     uint media;      // vertices of the path in media, with this one
     bool takes_all;  // photons, or only those that have come straight to the medium
 };
-
-// Whether no medium and no surface that stores photons has scattered a photon before. What other lobes sent straight
-// from a light to the point, its final gather does not look for.
-bool has_come_straight(uint photon) {
-    return medium_count(photons[photon].bounce_counts) == 0u && (photons[photon].flags & PHOTON_INDIRECT) == 0u;
-}
 
 // Radiance that a photon adds.
 vec3 photon_radiance(GatherPoint point, uint photon, float distance2, float radius) {

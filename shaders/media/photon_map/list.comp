@@ -14,6 +14,7 @@ uniform Parameters { ListMediumPhotonsParameters parameters; };
 readonly buffer Photons;
 readonly buffer PhotonRange;
 buffer MediumPhotons;
+#include "media/photon_map/straight_photons.glsl"
 
 void main() {
     uint index = invocation_index();
@@ -22,8 +23,6 @@ void main() {
         atomicAdd(direct_photon_count, 1u);
         return;
     }
-    bool is_straight =
-        medium_count(photons[index].bounce_counts) == 0u && (photons[index].flags & PHOTON_INDIRECT) == 0u;
-    if (is_straight) atomicAdd(straight_photon_count, 1u);
+    if (has_come_straight(index)) atomicAdd(straight_photon_count, 1u);
     medium_photons[atomicAdd(medium_photon_count, 1u)] = index;
 }
