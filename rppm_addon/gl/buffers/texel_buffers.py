@@ -59,24 +59,36 @@ class TexelBuffers:
     """Binds the texel buffers of a program, by their names."""
 
     def __init__(self, context: Context, buffers: Mapping[str, TexelBuffer]) -> None:
-        self._buffers = dict(buffers)
-        unsigned, integer = ctypes.c_uint, ctypes.c_int
-        self._generate = context.function("glGenTextures", None, integer, ctypes.POINTER(unsigned))
+        unsigned, integer, numbers = ctypes.c_uint, ctypes.c_int, ctypes.POINTER(ctypes.c_uint)
+        self._generate = context.function("glGenTextures", None, integer, numbers)
         self._bind = context.function("glBindTexture", None, unsigned, unsigned)
         self._attach = context.function("glTexBuffer", None, unsigned, unsigned, unsigned)
         self._bind_image = context.function(
             "glBindImageTexture", None, unsigned, unsigned, integer, ctypes.c_ubyte, integer, unsigned, unsigned
         )
+        self._bind_images = context.function("glBindImageTextures", None, unsigned, integer, numbers)
+        read_only = {name: buffer for name, buffer in buffers.items() if buffer.words_unit is None}
+        self._together = read_only if context.is_software and context.has_multi_bind else {}
+        """Buffers that are bound by one call: on llvmpipe six calls take longer than many a dispatch."""
+        self._others = {name: buffer for name, buffer in buffers.items() if name not in self._together}
+        units = [buffer.unit for buffer in self._together.values()]
+        self._first = min(units, default=0)
+        self._textures = (unsigned * (max(units) - self._first + 1 if units else 0))()
+        """Textures by unit from the first on; 0 at units that the program does not have."""
 
     def bind(self, contents: Mapping[str, moderngl.Buffer]) -> None:
         """Have each buffer at its unit."""
-        for name, buffer in self._buffers.items():
+        for name, buffer in self._others.items():
             texture = self._texture(contents[name], buffer.format)
             self._bind_image(buffer.unit, texture, 0, 0, 0, buffer.access, buffer.format)
             if buffer.words_unit is not None:
                 words = FORMATS["r32ui"]
                 texture = self._texture(contents[name], words)
                 self._bind_image(buffer.words_unit, texture, 0, 0, 0, WRITE_ONLY, words)
+        if self._together:
+            for name, buffer in self._together.items():
+                self._textures[buffer.unit - self._first] = self._texture(contents[name], buffer.format)
+            self._bind_images(self._first, len(self._textures), self._textures)
 
     def _texture(self, contents: moderngl.Buffer, number: int) -> int:
         """A buffer's texture of a format, made when it is first asked for."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from ...processors import usable_cores
 from ...scene.errors import DeviceError
 from .devices import Choice, Device, choose, list_devices
 from .driver_errors import OUT_OF_MEMORY, DriverErrors
@@ -44,6 +45,9 @@ _AVAILABLE_KIBIBYTES = {"GL_NVX_gpu_memory_info": 0x9049, "GL_ATI_meminfo": 0x87
 _DEDICATED_KIBIBYTES = 0x9047
 """Name of the dedicated memory, in KiB, in GL_NVX_gpu_memory_info."""
 _VARIABLE = "RPPM_DEVICE"
+_MAX_DRIVER_THREADS = 32
+"""Threads that llvmpipe has at most (LP_MAX_THREADS)."""
+_MULTI_BIND_VERSION = 440
 _NO_ADDRESSES = frozenset((1, 2, 3, ctypes.c_void_p(-1).value))
 """Addresses that some of Windows' drivers return in place of 0 (khronos.org/opengl/wiki/Load_OpenGL_Functions)."""
 _REMEDY = (
@@ -188,6 +192,20 @@ class Context:
     def is_software(self) -> bool:
         """Whether the driver draws on the processor, where GL timer queries mean nothing."""
         return any(name in self.information.name.lower() for name in ("llvmpipe", "softpipe", "swrast"))
+
+    @functools.cached_property
+    def driver_threads(self) -> int:
+        """Number of threads to which llvmpipe gives the groups of a dispatch; 0 of other drivers."""
+        if not self.is_software:
+            return 0
+        told = os.environ.get("LP_NUM_THREADS", "")
+        return min(int(told) if told.isdigit() else usable_cores(), _MAX_DRIVER_THREADS)
+
+    @functools.cached_property
+    def has_multi_bind(self) -> bool:
+        """Whether the driver binds several images by one call."""
+        gl = self.moderngl
+        return gl.version_code >= _MULTI_BIND_VERSION or "GL_ARB_multi_bind" in gl.extensions
 
     @property
     def storage_block_limit(self) -> int:

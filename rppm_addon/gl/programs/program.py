@@ -29,12 +29,15 @@ GROUPS_PER_ROW = 65535
 """Groups of a dispatch along an axis that every device allows."""
 _QUAD = 6
 """Vertices of two triangles: draws are cut between them."""
-FIRST_INVOCATION = "first_invocation"
-"""The uniform at location 0 that programs which can be run in pieces have (shaders/common/invocation.glsl)."""
+FIRST_INVOCATION, DRIVER_THREADS = "first_invocation", "driver_threads"
+"""The uniforms at locations 0 and 1: the first that programs which can be run in pieces have, the second that those of
+them have which deal their groups to a driver's threads (shaders/common/invocation.glsl)."""
 Block = moderngl.Buffer | BufferRange
 """Buffer, or range of one, that is bound as a storage block."""
 Bindable = Block | moderngl.Texture
 """Object that is bound by name: a storage block, or the texture of a sampler."""
+Parameters = Mapping | bytes
+"""Values of the members of a program's record of parameters, or the record packed (Record.pack)."""
 Constants("Dispatch", GROUP_SIZE=GROUP_SIZE, GROUPS_PER_ROW=GROUPS_PER_ROW)
 
 
@@ -91,7 +94,7 @@ class Program:
             name for name, limit in most.items() if name in buffers and buffers[name].size > limit + MAX_ADDED
         )
 
-    def _bind(self, buffers: Mapping[str, Any], parameters: Mapping | None) -> None:
+    def _bind(self, buffers: Mapping[str, Any], parameters: Parameters | None) -> None:
         if self.before_first_run is not None:
             self.before_first_run()
             self.before_first_run = None
@@ -108,7 +111,8 @@ class Program:
         if self._texel_buffers is not None:
             self._texel_buffers.bind(buffers)
         if self._parameters is not None and self.record is not None:
-            self._parameters.write(self.record.pack(dict(parameters or {})))
+            packed = parameters if isinstance(parameters, bytes) else self.record.pack(dict(parameters or {}))
+            self._parameters.write(packed)
             self._parameters.bind_to_uniform_block(UNIFORM_BINDINGS[PARAMETERS])
         if self.before_dispatch is not None:
             self.before_dispatch()
@@ -129,11 +133,12 @@ class ComputeProgram(Program):
         super().__init__(context, maker.pacing, [source])
         self._set_uniform = maker.set_uniform
         self._is_divisible = FIRST_INVOCATION in source.text
+        self._is_new = DRIVER_THREADS in source.text
         self.local_size = source.local_size
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)
 
-    def run(self, threads: int, buffers: Mapping[str, Bindable], parameters: Mapping | None = None) -> None:
+    def run(self, threads: int, buffers: Mapping[str, Bindable], parameters: Parameters | None = None) -> None:
         """Run so many threads (rounded up to whole groups) and order their writes."""
         if threads <= 0:
             return
@@ -150,24 +155,27 @@ class ComputeProgram(Program):
         arguments: moderngl.Buffer,
         offset: int,
         buffers: Mapping[str, Bindable],
-        parameters: Mapping | None = None,
+        parameters: Parameters | None = None,
     ) -> None:
         """Run as many groups as three uints at byte ``offset`` of ``arguments`` say."""
         if (other := self._for_large(buffers)) is not None:
             other.run_indirect(arguments, offset, buffers, parameters)
             return
 
-        def groups() -> int:
-            return math.prod(struct.unpack("=3I", arguments.read(12, offset=offset)))
-
-        # A driver on the processor has computed the arguments already: what runs for nothing is not even bound.
-        if self.context.is_software and groups() == 0:
-            return
+        groups = functools.partial(_groups_of, arguments, offset)
+        if self.context.is_software:  # has computed the arguments already: what runs for nothing is not even bound
+            count = groups()
+            if count == 0:
+                return
+            groups = functools.partial(int, count)
         self._bind(buffers, parameters)
         self._run(groups, lambda: self._program.run_indirect(arguments, offset))
 
     def _run(self, groups: Callable[[], int], whole: Callable[[], None]) -> None:
         """Run the program with what is bound, in pieces where it takes long, and order the writes."""
+        if self._is_new:
+            self._set_uniform(self._program.glo, 1, self.context.driver_threads)
+            self._is_new = False
         if self._is_divisible:
             self._pacing.run(self._pace, groups, whole, self._run_groups)
         else:
@@ -205,7 +213,7 @@ class DrawProgram(Program):
         framebuffer: moderngl.Framebuffer,
         vertices: int | moderngl.Buffer,
         buffers: Mapping[str, Bindable],
-        parameters: Mapping | None = None,
+        parameters: Parameters | None = None,
         viewport: tuple[int, int, int, int] | None = None,
         state: int = moderngl.NOTHING,
         depth_function: str = "<",
@@ -245,6 +253,11 @@ class DrawProgram(Program):
         super().release()
         self._vertex_array.release()
         self._program.release()
+
+
+def _groups_of(arguments: moderngl.Buffer, offset: int) -> int:
+    """Return the number of groups that an indirect dispatch asks for. Waits for the device."""
+    return math.prod(struct.unpack("=3I", arguments.read(12, offset=offset)))
 
 
 def _quads_of(command: moderngl.Buffer) -> int:

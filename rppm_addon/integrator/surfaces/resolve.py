@@ -2,6 +2,7 @@
 """Hits become closures in one batched pass (DIRT's deferred fetch)."""
 
 import enum
+import struct
 from dataclasses import dataclass
 
 import moderngl
@@ -33,7 +34,7 @@ StorageBlock("AovValues", "float aov_values[];")
 """Values that AOV Output nodes have written, for each path of a band."""
 
 
-Record(
+_PARAMETERS = Record(
     "ResolveParameters",
     world_to_camera="mat4",
     window="vec4",
@@ -117,7 +118,6 @@ class Resolve(BufferSet):
         super().__init__(context, library)
         self._library = library
         self._count = library.compute("surfaces/resolve/count.comp")
-        self._allocate = library.compute("surfaces/resolve/allocate.comp")
         self._order_hits = library.compute("surfaces/resolve/order.comp")
         self._programs: list[ComputeProgram] = []
         self._ray_counts: list[NodeRayCounts] = []
@@ -272,13 +272,19 @@ class Resolve(BufferSet):
 
         # A list of paths is laid out as the order of a single program's hits.
         order = active.buffer if len(self._programs) == 1 else self._order_by_program(buffers, active)
+        ordered = {**buffers, "HitOrder": order}
+        packed = bytearray(_PARAMETERS.pack({**parameters, "program": 0}))
         for number, program in enumerate(self._programs):
             arguments = 4 * (_RANGE_SIZE * number + 4)
-            ordered, of_program = {**buffers, "HitOrder": order}, {**parameters, "program": number}
             if self._ray_counts[number].levels:
-                ordered["NodeRays"] = self._node_rays.require(closures.size // CLOSURE.size * self._ray_stride)
-                of_program |= self._trace_node_rays(program, order, arguments, ordered, of_program)
-            program.run_indirect(order, arguments, ordered, of_program)
+                places = closures.size // CLOSURE.size * self._ray_stride
+                with_rays = {**ordered, "NodeRays": self._node_rays.require(places)}
+                of_program = {**parameters, "program": number}
+                of_program |= self._trace_node_rays(program, order, arguments, with_rays, of_program)
+                program.run_indirect(order, arguments, with_rays, of_program)
+            else:
+                struct.pack_into("<I", packed, _PARAMETERS.offset("program"), number)
+                program.run_indirect(order, arguments, ordered, bytes(packed))
 
     def _trace_node_rays(
         self,
@@ -312,7 +318,6 @@ class Resolve(BufferSet):
         self._order.require_items(_RANGE_SIZE * len(self._programs) + active.capacity)
         self._order.buffer.clear(4 * _RANGE_SIZE * len(self._programs))
         buffers = {**buffers, "HitOrder": self._order.buffer, "ActivePaths": active.buffer}
-        active.run(self._count, buffers)
-        self._allocate.run(1, buffers, {"count": len(self._programs)})
+        active.run(self._count, buffers, {"count": len(self._programs)})
         active.run(self._order_hits, buffers)
         return self._order.buffer

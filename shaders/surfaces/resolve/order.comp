@@ -18,5 +18,5 @@ void main() {
     uint triangle = hits[index].triangle;
     if (!(rays[index].maximum_distance > 0.0) || triangle == NO_TRIANGLE) return;
     uint program = materials[attributes[triangle].material].program;
-    hit_order[range_first(program) + atomicAdd(hit_order[RANGE_SIZE * program + 2u], 1u)] = index;
+    hit_order[range_first(program) + atomicAdd(hit_order[range_of(program) + 2u], 1u)] = index;
 }
