@@ -19,6 +19,7 @@ class Device:
     def __init__(self, monkeypatch, seconds_per_item):
         self.clock = 0.0
         self.seconds_per_item = seconds_per_item
+        self.seconds_per_dispatch = 0.0
         self.given = []
         self.is_software = True
         monkeypatch.setattr(pacing_module, "time", SimpleNamespace(perf_counter=lambda: self.clock))
@@ -37,7 +38,7 @@ class Device:
 
     def _take(self, items, first):
         self.given.append((first, items))
-        self.clock += items * self.seconds_per_item
+        self.clock += self.seconds_per_dispatch + items * self.seconds_per_item
 
 
 @pytest.mark.parametrize("seconds_per_item", [1e-7, 1e-5, 1e-3])
@@ -62,6 +63,16 @@ def test_what_is_fast_is_given_whole_from_the_second_time_on(monkeypatch):
     assert device.run(pacing, pace, 10_000) == [(..., 10_000)]
     pacing.forget()  # another scene: its speed is not known
     assert device.run(pacing, pace, 10_000)[0] == (0, 64)
+
+
+def test_what_a_few_items_take_says_nothing_of_many(monkeypatch):
+    device = Device(monkeypatch, 1e-7)
+    device.seconds_per_dispatch = 1e-3
+    pacing, pace = Pacing(device), Pace()
+    for _ in range(2):
+        device.run(pacing, pace, 10_000)
+    device.run(pacing, pace, 1)
+    assert device.run(pacing, pace, 10_000) == [(..., 10_000)]
 
 
 def test_what_becomes_slow_is_cut_finer(monkeypatch):
