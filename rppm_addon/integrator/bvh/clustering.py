@@ -71,10 +71,11 @@ def join(
     first: np.ndarray,
     second: np.ndarray,
 ) -> None:
-    """Join pairs of clusters, ``first`` and ``second`` (n,): fill in the node of each pair, (n,) NODE records, which the
-    first of the pair stands for from then on.
+    """Join pairs of clusters, ``first`` and ``second`` (n,) by number: fill in the node of each pair, for which its
+    first cluster stands from then on.
 
-    numbers: (n,), those of the nodes. low, high, children: those of all clusters, as build_nodes has them.
+    nodes: (n,) NODE records, and ``numbers`` (n,) theirs. low, high, children: of all clusters, as build_nodes has
+    them.
     """
     for side, clusters in enumerate((first, second)):
         nodes[f"low{side}"], nodes[f"high{side}"] = low[:, clusters].T, high[:, clusters].T

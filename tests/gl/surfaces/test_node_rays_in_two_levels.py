@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import scenes
 from rendering import radiance_of
-from support.node_materials import diffuse_by_node
+from support.graphs import diffuse_by_node
 
 from rppm_addon.scene import (
     AccelerationStructure,

@@ -5,8 +5,8 @@ import dataclasses
 
 import numpy as np
 import pytest
+from support.graphs import diffuse_by_node
 from support.lobes import Lobe, LobeKind, material
-from support.node_materials import diffuse_by_node
 
 from rppm_addon.integrator.common.instance_columns import InstanceColumns
 from rppm_addon.integrator.common.stage_sizes import StageSizes
