@@ -194,9 +194,9 @@ def _contexts() -> Iterator[SimpleNamespace]:
         thing = bpy.data.objects.new(kind.title(), data)
         scene.collection.objects.link(thing)
         yield context_of(scene, object=thing, light=data, world=scene.world)
+    yield context_of(scene, volume=bpy.data.volumes.new("Volume"), world=scene.world)
     data = bpy.data.cameras.new("Camera")
     data.type = "PANO"
-    yield context_of(scene, volume=bpy.data.volumes.new("Volume"), world=scene.world)
     camera = bpy.data.objects.new("Camera", data)
     scene.collection.objects.link(camera)
     for bake_type in ("COMBINED", "DIFFUSE", "NORMAL"):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Node graphs of a single node, and chains of nodes."""
+"""Node graphs of a single node or two, and chains of nodes."""
 
 from rppm_addon.materials.nodes import KINDS
-from rppm_addon.scene import Link, NodeGraph
+from rppm_addon.scene import Link, Material, NodeGraph
 
 
 def surface_graph(kind: str, **inputs: object) -> NodeGraph:
@@ -10,6 +10,13 @@ def surface_graph(kind: str, **inputs: object) -> NodeGraph:
     graph = NodeGraph()
     graph.surface = graph.add(kind, next(iter(KINDS[kind].outputs)), **inputs)
     return graph
+
+
+def diffuse_by_node(kind: str, output: str, **members: object) -> Material:
+    """A diffuse material of the color that a node gives. members: as NodeGraph.add takes them."""
+    graph = NodeGraph()
+    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=graph.add(kind, output, **members))
+    return Material(kind, graph)
 
 
 def chain(graph: NodeGraph, count: int) -> Link:

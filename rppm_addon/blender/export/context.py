@@ -68,7 +68,8 @@ class ExportContext:
         self.curves, self.is_render = curve_settings(depsgraph), depsgraph.mode == "RENDER"
         if self.base_meshes is None:
             self.base_meshes = BaseMeshes(depsgraph, self.viewport)
-        self.base_meshes.read_from(depsgraph, self.viewport)
+        else:
+            self.base_meshes.read_from(depsgraph, self.viewport)
         self.material_override = layer.material_override
         self.masks = LayerMasks(layer)
         self.filter = LayerFilter.of(layer)

@@ -53,10 +53,7 @@ def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.n
             first, second = _next_in_line(count) if is_deep else _mutually_nearest(low, high, workers)
             passes += 1
             made = slice(end - len(first), end)
-            fill(nodes[made], low, high, children, first, second)
-            children[first] = np.arange(made.start, made.stop, dtype=np.uint32)
-            low[:, first] = np.minimum(low[:, first], low[:, second])
-            high[:, first] = np.maximum(high[:, first], high[:, second])
+            join(nodes[made], np.arange(made.start, made.stop), low, high, children, first, second)
             end = made.start
             is_left = np.ones(count, bool)
             is_left[second] = False
@@ -65,18 +62,27 @@ def build_nodes(low: np.ndarray, high: np.ndarray, children: np.ndarray) -> np.n
     return nodes
 
 
-def fill(
+def join(
     nodes: np.ndarray,
+    numbers: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
     children: np.ndarray,
     first: np.ndarray,
     second: np.ndarray,
 ) -> None:
-    """Fill in nodes, as many as there are pairs of clusters: of each the numbers of the ``first`` and ``second``."""
+    """Join pairs of clusters, ``first`` and ``second`` (n,) by number: fill in the node of each pair, for which its
+    first cluster stands from then on.
+
+    nodes: (n,) NODE records, and ``numbers`` (n,) theirs. low, high, children: of all clusters, as build_nodes has
+    them.
+    """
     for side, clusters in enumerate((first, second)):
         nodes[f"low{side}"], nodes[f"high{side}"] = low[:, clusters].T, high[:, clusters].T
         nodes[f"child{side}"] = children[clusters]
+    children[first] = numbers
+    low[:, first] = np.minimum(low[:, first], low[:, second])
+    high[:, first] = np.maximum(high[:, first], high[:, second])
 
 
 def _morton_codes(low: np.ndarray, high: np.ndarray) -> np.ndarray:

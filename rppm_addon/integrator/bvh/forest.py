@@ -10,7 +10,7 @@ import functools
 import numpy as np
 
 from ...processors import usable_cores
-from .clustering import BLOCK, MAX_DEPTH, NODE, REACH_OF_FEW, cells_of_side, fill, find_partners, interleaved
+from .clustering import BLOCK, MAX_DEPTH, NODE, REACH_OF_FEW, cells_of_side, find_partners, interleaved, join
 
 MOST_BOXES = 8192
 """Number of boxes of a tree from which on building it alone takes no longer."""
@@ -27,11 +27,11 @@ def build_forest(low: np.ndarray, high: np.ndarray, children: np.ndarray, counts
     trees = np.repeat(np.arange(len(counts), dtype=np.int32), counts)
     order = np.lexsort((_morton_codes(low, high, trees, counts), trees))
     low, high, children = np.take(low, order, axis=1), np.take(high, order, axis=1), children[order]
-    ends = counts - 1
+    lengths = counts - 1
+    first_nodes = np.cumsum(lengths) - lengths
+    nodes = NODE.zeros(int(lengths.sum()))
+    ends, counts, passes = lengths.copy(), counts.copy(), 0
     """Nodes of each tree are numbered from the last to the first, the root."""
-    first_nodes = np.cumsum(ends) - ends
-    nodes = NODE.zeros(int(ends.sum()))
-    ends, counts, passes = ends.copy(), counts.copy(), 0
     with concurrent.futures.ThreadPoolExecutor(usable_cores(), "RPPM hierarchies") as workers:
         while len(children):
             # A pass deepens a tree by one at most.
@@ -43,11 +43,8 @@ def build_forest(low: np.ndarray, high: np.ndarray, children: np.ndarray, counts
             ends -= made
             numbers = ends[owners] + np.arange(len(first)) - (np.cumsum(made) - made)[owners]
             records = NODE.zeros(len(first))
-            fill(records, low, high, children, first, second)
+            join(records, numbers, low, high, children, first, second)
             nodes[first_nodes[owners] + numbers] = records
-            children[first] = numbers.astype(np.uint32)
-            low[:, first] = np.minimum(low[:, first], low[:, second])
-            high[:, first] = np.maximum(high[:, first], high[:, second])
             counts -= made
             stays = counts[trees] > 1
             stays[second] = False

@@ -63,7 +63,7 @@ class LightList:
             record["flags"] |= LightFlag.HOLDS_MEDIUM * holds_medium(light, scene, geometry, media)
             record["link"] = self.links.of_light(light)
             if light.linking is not None and not light.linking.lights_media:
-                record["flags"] &= ~int(RayVisibility.VOLUME_SCATTER)
+                record["flags"] = int(record["flags"]) & ~int(RayVisibility.VOLUME_SCATTER)
             nodes = maps.nodes.get(index)
             if nodes is not None:
                 record["strength"] *= nodes.scale

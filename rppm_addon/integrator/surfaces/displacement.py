@@ -37,7 +37,7 @@ class _Shape:
     dicing_key: tuple[object, ...] = ()
     """View and instances by which it was divided, to be compared."""
     offsets: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.float32))
-    """(vertices, 3) object space."""
+    """(vertices, 3) object space; none where nothing displaces it."""
     displaced: Mesh | None = None
     deformations: dict[int, tuple[Deformation, Deformation]] = field(default_factory=dict)
     """By the id of a deformation, it and that of the displaced mesh."""
@@ -264,9 +264,11 @@ def _bent(shape: _Shape, deformation: Deformation, place: int) -> Deformation:
     before, bent = shape.deformations.get(id(deformation), (None, None))
     if bent is None or before is not deformation or bent.mesh != place:
         whole = deformation if shape.diced is None else shape.diced.deformed(deformation)
-        positions = whole.positions + shape.offsets
-        keys = zip(whole.positions, positions, whole.corner_normals, strict=True)
-        normals = np.stack([shape.normals(*key) for key in keys])
+        positions, normals = whole.positions, whole.corner_normals
+        if shape.is_displaced:
+            positions = whole.positions + shape.offsets
+            keys = zip(whole.positions, positions, whole.corner_normals, strict=True)
+            normals = np.stack([shape.normals(*key) for key in keys])
         bent = Deformation(place, deformation.times, positions, normals)
         shape.deformations[id(deformation)] = deformation, bent
     return bent

@@ -158,7 +158,7 @@ class AccelerationSettings(SettingGroup):
             Instancing.TWO_LEVELS: (
                 "Two Levels",
                 "Instances share the triangles of their mesh: memory does not grow with their number, and moving them "
-                "rebuilds little. What has a volume, or emits light that differs from instance to instance, is "
+                "rebuilds little. Volume objects, and what emits light that differs from instance to instance, are "
                 "expanded all the same. The camera traces its first hits",
             ),
         },

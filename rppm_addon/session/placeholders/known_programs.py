@@ -49,7 +49,7 @@ class KnownPrograms:
         if sum(triangles[instance.mesh] for instance in scene.instances if instance.mesh in known) > MOST_TRIANGLES:
             return False
         needed = {program for material in (*scene.materials, default_material()) for program in programs_of(material)}
-        if any(mesh.dicing is not None for mesh in scene.meshes):  # into how many triangles?
+        if any(mesh.dicing is not None for mesh in scene.meshes):  # may become far more than MOST_TRIANGLES
             return False
         return bool(self._programs) and self._programs.issuperset(needed)
 

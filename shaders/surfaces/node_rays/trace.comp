@@ -125,7 +125,7 @@ Ray cast_ray(NodeRay asked, uint beside, uint triangle) {
 vec3 keep_cast(uint beside, Hit hit, vec3 direction, uint instance) {
     node_rays[beside].found = vec3(0.0);
     if (hit.triangle == NO_TRIANGLE) return vec3(0.0);
-    uint found_instance = instance_of(hit), found_triangle = mesh_triangle_of(hit);
+    uint found_instance = instance_of(hit.triangle), found_triangle = mesh_triangle_of(hit);
     node_rays[beside].direction = vec3(hit.b1, hit.b2, float(found_triangle & 0xffffffu));
     node_rays[beside].reach = float(found_triangle >> 24u | (found_instance & 0xffffu) << 8u);
     vec3 geometric = geometric_normal(hit.triangle);

@@ -338,6 +338,20 @@ def test_what_bends_is_divided_where_nothing_displaces_it(displaced):
     assert result.meshes[1].triangle_count > 4 * square.triangle_count and result.meshes[2] is flat
 
 
+@pytest.mark.parametrize("materials", [[], [0]])
+def test_what_bends_and_is_not_displaced_is_divided_at_all_times(displaced, materials):
+    mesh = dataclasses.replace(grid(4), dicing=Dicing(2.0, True, True))
+    scene = scene_of(plain(), meshes=[mesh], instances=[Instance(0, np.eye(4), materials)])
+    scene.shutter = Shutter(np.ones(4), meshes=[bent(mesh, 0.0, 0.0, 0.5)])
+    result = displaced(scene)
+    (moved,), (shape,) = result.meshes, result.shutter.meshes
+    assert moved.triangle_count > 4 * mesh.triangle_count
+    np.testing.assert_array_equal(shape.positions[0], moved.positions)
+    np.testing.assert_allclose(shape.positions[1], moved.positions + np.float32([0.0, 0.0, 0.5]), atol=1e-6)
+    np.testing.assert_array_equal(shape.corner_normals[0], moved.corner_normals)
+    assert displaced(scene, False).shutter.meshes[0] is shape
+
+
 def test_meshes_are_divided_anew_for_another_view_only(displaced):
     mesh = dataclasses.replace(grid(4), dicing=Dicing(2.0, True, True))
     scene = scene_of(plain(), meshes=[mesh])

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import scenes
 from rendering import radiance_of
+from support.graphs import diffuse_by_node
 
 from rppm_addon.scene import (
     AccelerationStructure,
@@ -20,15 +21,7 @@ from rppm_addon.scene import (
     Scene,
 )
 
-SAMPLES = 8
-
-
-def colored(kind: str, output: str, **members: object) -> Material:
-    """Has the color that a node gives."""
-    graph = NodeGraph()
-    color = graph.add(kind, output, samples=float(SAMPLES), **members)
-    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=color)
-    return Material("colored", graph)
+SAMPLES = 8.0
 
 
 def casting() -> Material:
@@ -53,11 +46,11 @@ def tinted() -> Material:
 
 
 NODES = {
-    "occlusion": lambda: colored("ambient_occlusion", "color", distance=1.0),
-    "occlusion by the object": lambda: colored(
-        "ambient_occlusion", "color", options={"only_local": True, "inside": True}, distance=0.2
+    "occlusion": lambda: diffuse_by_node("ambient_occlusion", "color", samples=SAMPLES, distance=1.0),
+    "occlusion by the object": lambda: diffuse_by_node(
+        "ambient_occlusion", "color", options={"only_local": True, "inside": True}, samples=SAMPLES, distance=0.2
     ),
-    "bevel": lambda: colored("bevel", "normal", radius=0.3),
+    "bevel": lambda: diffuse_by_node("bevel", "normal", samples=SAMPLES, radius=0.3),
     "raycast": casting,
     "attributes of what a raycast meets": tinted,
 }

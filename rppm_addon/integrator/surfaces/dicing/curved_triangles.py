@@ -7,9 +7,9 @@ from ....scene.meshes import Mesh
 from ..unit_vectors import unit_vectors
 from .feature_curves import FeatureCurves
 
-_SHARPEST = np.cos(np.radians(35.0))
+_CREASE_COSINE = np.cos(np.radians(35.0))
 """Cosine between the normals of a vertex and of a face around it from which on edges at the vertex are creases."""
-_SMOOTH = 0.99
+_SMOOTH_COSINE = 0.99
 """Cosine between the normals of a corner and of its vertex from which on the corner is shaded smoothly."""
 _MAX_FACES = 64
 """Faces around a vertex up to which each is compared with all others."""
@@ -90,7 +90,7 @@ def vertex_normals(triangles: np.ndarray, positions: np.ndarray) -> tuple[np.nda
     vertices, count = triangles.reshape(-1), len(positions)
     sums = [np.bincount(vertices, (angles * faces[:, axis, None]).reshape(-1), count) for axis in range(3)]
     normals = unit_vectors(np.stack(sums, axis=-1))
-    is_sharp = ((normals[triangles] * faces[:, None]).sum(axis=-1) < _SHARPEST) & faces.any(axis=1)[:, None]
+    is_sharp = ((normals[triangles] * faces[:, None]).sum(axis=-1) < _CREASE_COSINE) & faces.any(axis=1)[:, None]
     has_creases = np.zeros(count, bool)
     has_creases[triangles[is_sharp]] = True
     return normals, has_creases
@@ -101,7 +101,7 @@ def creased_normals(mesh: Mesh, positions: np.ndarray, corner_normals: np.ndarra
     of the normals of the faces on their side. positions: (vertices, 3)."""
     triangles = mesh.corner_vertices[mesh.triangle_corners]
     normals, has_creases = vertex_normals(triangles, positions)
-    is_smooth = (corner_normals * normals[mesh.corner_vertices]).sum(axis=1) > _SMOOTH
+    is_smooth = (corner_normals * normals[mesh.corner_vertices]).sum(axis=1) > _SMOOTH_COSINE
     chosen = has_creases[triangles] & is_smooth[mesh.triangle_corners]
     places = np.flatnonzero(chosen)
     if len(places) == 0:
@@ -114,7 +114,7 @@ def creased_normals(mesh: Mesh, positions: np.ndarray, corner_normals: np.ndarra
     most = int(np.unique(vertices, return_counts=True)[1].max())
     for step in range(min(most, _MAX_FACES)):
         first, second = np.arange(len(places) - step), np.arange(step, len(places))
-        is_near = (vertices[first] == vertices[second]) & ((faces[first] * faces[second]).sum(axis=1) > _SHARPEST)
+        is_near = (vertices[first] == vertices[second]) & ((faces[first] * faces[second]).sum(axis=1) > _CREASE_COSINE)
         for here, there in ((first, second), (second, first))[: 1 + (step > 0)]:
             np.add.at(sums, corners[here[is_near]], faces[there[is_near]])
     return np.where(sums.any(axis=1)[:, None], unit_vectors(sums), corner_normals).astype(np.float32)

@@ -17,7 +17,8 @@ from .refinement import Refinement, Refiner, TooManyTriangles
 
 MOST_TRIANGLES = 1 << 20
 """Largest number of triangles of all instances of a divided mesh together."""
-_LEAST_COARSENING = 1.1
+_MIN_COARSENING = 1.1
+"""Least factor by which edges become longer at a time where there are too many triangles."""
 
 
 class DicedMesh:
@@ -42,7 +43,7 @@ class DicedMesh:
             try:
                 return refiner.refine(rounds, self.coarsening, most)
             except TooManyTriangles as error:
-                self.coarsening *= max(float(np.sqrt(error.excess)), _LEAST_COARSENING)
+                self.coarsening *= max(float(np.sqrt(error.excess)), _MIN_COARSENING)
 
     @functools.cached_property
     def _corners(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

@@ -48,7 +48,7 @@ class EdgeLengths:
             lengths = np.sqrt(x * x + y * y + z * z)
             if self._in_pixels:
                 lengths /= self._pixel_sizes(0.5 * (a + b))
-            np.maximum(result, lengths, out=result)
+            np.fmax(result, lengths, out=result)  # instances with matrices that are not finite do not count
         return result / self._unit
 
     def _pixel_sizes(self, points: np.ndarray) -> np.ndarray:

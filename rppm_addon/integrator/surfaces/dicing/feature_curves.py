@@ -5,9 +5,9 @@ import numpy as np
 
 from ..unit_vectors import unit_vectors
 
-_SHARPEST = np.cos(np.radians(60.0))
+_CREASE_COSINE = np.cos(np.radians(60.0))
 """Cosine between the normals of two faces up to which the edge between them is a crease."""
-_STRAIGHTEST = np.cos(np.radians(35.0))
+_CORNER_COSINE = np.cos(np.radians(35.0))
 """Cosine between two edges of a curve up to which the vertex between them is a corner of the curve."""
 
 
@@ -22,7 +22,7 @@ class FeatureCurves:
         unique, which, faces = np.unique(keys, return_inverse=True, return_counts=True)
         which = which.reshape(-1)
         sums = np.stack([np.bincount(which, np.repeat(face_normals[:, axis], 3)) for axis in range(3)], axis=-1)
-        is_crease = (faces == 2) & (0.5 * (sums * sums).sum(axis=1) - 1.0 < _SHARPEST)
+        is_crease = (faces == 2) & (0.5 * (sums * sums).sum(axis=1) - 1.0 < _CREASE_COSINE)
         is_feature = is_crease | (faces == 1)
         self.edges = is_feature[which].reshape(-1, 3)
         """(n, 3) whether the edge from each corner to the next one is a crease or a border."""
@@ -40,7 +40,7 @@ def _tangents(edges: np.ndarray, positions: np.ndarray) -> np.ndarray:
     first = np.flatnonzero(np.bincount(here, minlength=len(positions))[here] == 2)[::2]
     ways = positions[there].astype(np.float64) - positions[here]
     back, onward = ways[first], ways[first + 1]
-    is_curve = (-unit_vectors(back) * unit_vectors(onward)).sum(axis=1) > _STRAIGHTEST
+    is_curve = (-unit_vectors(back) * unit_vectors(onward)).sum(axis=1) > _CORNER_COSINE
     back, onward = back[is_curve], onward[is_curve]
     slopes = [way / np.maximum((way * way).sum(axis=1, keepdims=True), 1e-30) for way in (back, onward)]
     result[here[first[is_curve]]] = unit_vectors(slopes[1] - slopes[0])

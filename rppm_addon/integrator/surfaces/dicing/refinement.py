@@ -137,8 +137,9 @@ class _Part:
 
 def _expected(lengths: np.ndarray, rounds: int) -> float:
     """About how many triangles come of some with edges of these lengths (n, 3), in units of the longest allowed, that
-    are halved at most ``rounds`` times each."""
-    halvings = np.minimum(np.ceil(np.log2(np.clip(np.sort(lengths, axis=1), 1.0, 1e6))), rounds)
+    are halved at most ``rounds`` times each. Edges whose length is no number are not."""
+    bounded = np.fmin(np.fmax(lengths, 1.0), 1e6)
+    halvings = np.minimum(np.ceil(np.log2(np.sort(bounded, axis=1))), rounds)
     return float(np.exp2(halvings[:, 2] + halvings[:, 0]).sum())
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What rays of nodes ask of hits on instances, whose attributes are not gathered: a kernel that looks at hits itself
-// only gives them no numbers. Normals come from the mesh, by the same operations as those of gathered triangles.
+// What rays of nodes ask of hits on instances. Normals come from the mesh, by the same operations as those of gathered
+// triangles.
+#include "acceleration/hits/two_levels.glsl"
 #include "surfaces/geometry/corner_normals.glsl"
 #include <InstanceEntry>
 
@@ -11,12 +12,6 @@ Hit trace_node_ray(Ray ray, bool any_hit) {
     Hit best = trace_ray(ray, any_hit);
     if (is_on_instance(best)) best.triangle = keep_hit(hit_origin(best), ray.source_triangle);
     return best;
-}
-
-uint instance_of(Hit hit) {
-    uvec2 origin;
-    if (!find_origin(hit.triangle, origin)) return attributes[hit.triangle].instance;
-    return bottom_level_instances[origin.x].placement;
 }
 
 uint mesh_triangle_of(Hit hit) {

@@ -5,6 +5,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from support.graphs import diffuse_by_node
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.common.instance_columns import InstanceColumns
@@ -103,9 +104,7 @@ def test_what_glows_by_object_or_place_is_expanded():
 def with_node(kind: str, output: str, **members: object) -> Scene:
     """Balls whose color is what a node gives."""
     scene = scene_of(*BALLS, **TWO_LEVELS)
-    graph = NodeGraph()
-    graph.surface = graph.add("bsdf_diffuse", "bsdf", color=graph.add(kind, output, **members))
-    scene.materials[PLAIN] = Material("plain", graph)
+    scene.materials[PLAIN] = diffuse_by_node(kind, output, **members)
     return scene
 
 

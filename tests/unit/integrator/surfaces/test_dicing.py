@@ -247,6 +247,18 @@ def test_there_are_no_more_triangles_than_allowed(monkeypatch, instances):
     assert whole.triangle_count == sphere("Ball").triangle_count
 
 
+def test_coordinates_that_are_no_numbers_stop_nothing_else(monkeypatch):
+    """Neither a vertex of the mesh, where there are too many triangles, nor the place of an instance."""
+    monkeypatch.setattr(diced_mesh, "MOST_TRIANGLES", 3000)
+    mesh = ball(FLAT)
+    mesh.positions[0] = np.nan
+    diced = DicedMesh(mesh, HERE, CAMERA, DicingView(0.5))
+    assert diced.coarsening > 1.0 and 500 < diced.mesh.triangle_count <= 3000
+    nowhere = Instance(0, np.full((4, 4), np.nan))
+    count = DicedMesh(plane(0.5), [nowhere, *HERE], CAMERA, DicingView(8.0)).mesh.triangle_count
+    assert count == DicedMesh(plane(0.5), HERE, CAMERA, DicingView(8.0)).mesh.triangle_count > 2
+
+
 def test_of_many_instances_the_largest_counts():
     far = [Instance(0, placed(0.0, 0.0, -500.0 - place)) for place in range(40)]
     count = DicedMesh(plane(0.75), [*far, *HERE], CAMERA, DicingView(4.0)).mesh.triangle_count

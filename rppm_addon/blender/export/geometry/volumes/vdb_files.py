@@ -18,6 +18,8 @@ from .velocities import merged
 
 MAX_VOXELS = 1 << 24
 """Voxels of a grid, at most; of larger ones each second voxel is read, along each axis, or less."""
+_AXES = 3
+"""Components of a vector."""
 
 
 class VolumeError(RppmError):
@@ -65,18 +67,21 @@ def read_grids(volume: bpy.types.Volume, with_velocities: bool = False) -> Volum
     if velocities:
         found.velocities = _velocities(volume, velocities)
         if found.velocities is None:
-            found.messages.append("its velocities are no grid of vectors, nor three grids of the same voxels")
+            found.messages.append(
+                "its velocities are no grid of vectors, nor three grids of the same voxels, and do not blur it; choose "
+                "another Velocity Grid"
+            )
     return found
 
 
 def _velocities(volume: bpy.types.Volume, found: Mapping[str, VolumeGrid]) -> VolumeGrid | None:
     """The velocities of a volume among its grids by name; None where they are no vectors."""
     whole = found.get(volume.velocity_grid)
-    if whole is not None and whole.values.shape[3] == len("XYZ"):
+    if whole is not None and whole.values.shape[3] == _AXES:
         return whole
     components = [found.get(name) for name in _component_names(volume)]
     scalars = [grid for grid in components if grid is not None and grid.values.shape[3] == 1]
-    return merged(scalars) if len(scalars) == len("XYZ") else None
+    return merged(scalars) if len(scalars) == _AXES else None
 
 
 def _module() -> ModuleType:
