@@ -20,7 +20,7 @@ from . import (  # noqa: F401 (they list their kinds)
     still_lifes,
 )
 from .draws import Draws
-from .oddities import files  # noqa: F401 (it lists its kind)
+from .oddities import files, strangers  # noqa: F401 (they list their kinds)
 from .scenes import KINDS, begin
 
 

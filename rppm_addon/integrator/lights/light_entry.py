@@ -39,6 +39,27 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / size if size > 0 else np.array([0.0, 0.0, 1.0])
 
 
+def _spot_cone(axes: np.ndarray, cosine: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Cycles' cone of a spot with the axes (3, 3) of its matrix, which may be scaled and sheared.
+
+    What a direction has along the three vectors (3,) is what it is in the light's own space, where the cone is round,
+    times one factor; the third has length 1. Photons go out in the round cone about it that holds that of the spot: the
+    cosine of half its angle.
+    """
+    lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
+    units = axes / lengths
+    if np.abs(units.T @ units - np.eye(3)).max() < 1e-5 or abs(np.linalg.det(units)) < 1e-6:
+        widest = math.atan(math.tan(min(math.acos(cosine), 1.57)) * max(1.0, max(lengths[:2]) / lengths[2]))
+        holding = math.cos(widest) if cosine > 1e-3 else 0.0
+        u, v = (units[:, axis] * (lengths[2] / lengths[axis]) for axis in (0, 1))
+        return u, v, -_unit(axes[:, 2]), holding
+    u, v, beam = np.linalg.inv(axes) / np.linalg.norm(np.linalg.inv(axes)[2])
+    turn, sine = np.linspace(0.0, 2.0 * math.pi, 257), math.sqrt(1.0 - cosine * cosine)
+    rim = axes @ np.stack([sine * np.cos(turn), sine * np.sin(turn), np.full_like(turn, -cosine)])
+    holding = float((-beam @ rim / np.linalg.norm(rim, axis=0)).min())
+    return u, v, -beam, max(holding - 1e-3 * (1.0 - holding), 0.0) if cosine > 1e-3 else 0.0
+
+
 def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarray]:
     """A light's record and its power, (3,) W, within the scene."""
     entry = LIGHT.zeros(1)[0]
@@ -58,15 +79,10 @@ def light_entry(light: Light, scene_radius: float) -> tuple[np.ndarray, np.ndarr
         return entry, 4 * math.pi * strength
     if light.kind is LightKind.SPOT:
         cosine = math.cos(0.5 * min(light.spot_angle, math.pi))
-        lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
-        # A scaled spot has an elliptic cone: axes divided by their scale relative to the beam's.
         entry["kind"] = LightShape.SPOT
-        entry["axis_u"] = axes[:, 0] / lengths[0] * (lengths[2] / lengths[0])
-        entry["axis_v"] = axes[:, 1] / lengths[1] * (lengths[2] / lengths[1])
+        entry["axis_u"], entry["axis_v"], entry["normal"], holding = _spot_cone(axes, cosine)
         entry["cosine_cone"], entry["blend"] = cosine, np.clip(light.spot_blend, 0.0, 1.0)
-        # Photons go out in the round cone that holds the elliptic one.
-        widest = math.atan(math.tan(min(math.acos(cosine), 1.57)) * max(1.0, max(lengths[:2]) / lengths[2]))
-        entry["spread_scale"] = 1.0 - math.cos(widest) if cosine > 1e-3 else 1.0
+        entry["spread_scale"] = 1.0 - holding
         return entry, strength * spot_solid_angle(cosine, light.spot_blend)
     if light.kind is LightKind.SUN:
         entry["kind"] = LightShape.SUN

@@ -116,6 +116,22 @@ UNNAMED = (
         "what camera rays and final gathers find of it counts for the group of one of them",
     ),
     (
+        "Metallic BSDF with Physical Conductor",
+        "an F82 curve stands in: of metals up to 4 % off, 0.7 % over all directions; darker where it hardly absorbs",
+    ),
+    (
+        "Area lights that a parent of uneven scale shears",
+        "they shine as their shape does; Cycles places the light's samples as if its sides were at right angles",
+    ),
+    (
+        "WebP and Iris images with alpha, Cineon images",
+        "as Blender shows them; Cycles does not multiply the former by alpha, and shows logarithms of the latter",
+    ),
+    (
+        "Images of 16 bits with alpha that are no PNG, or premultiplied and neither sRGB nor linear",
+        "half-transparent colors are Blender's, which differ from Cycles'",
+    ),
+    (
         "Thin films on glass with a Specular Tint",
         "tinted at all angles, in Cycles less at grazing ones; what passes the film is not tinted the other way round",
     ),

@@ -13,6 +13,8 @@ from .color_spaces import WHITE_IN_CYCLES, scene_linear, working_space
 _PART = 1 << 16
 """Numbers that are looked at while they lie in a cache."""
 _DATA = {"Non-Color", "Raw", "scene_linear"}
+_MULTIPLIED_BY_ALPHA = {"PNG": False, "OPEN_EXR": True}
+"""Formats of files that Blender makes floats of, and whether Cycles takes their colors for times alpha."""
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,7 @@ class ImageLook:
     is_float: bool
     is_associated: bool
     is_in_file: bool
+    file_format: str
     working: WorkingSpace
     """Space of the scene's colors."""
 
@@ -32,7 +35,10 @@ class ImageLook:
     def of(cls, image: bpy.types.Image) -> "ImageLook":
         """Return the properties of an image."""
         space, in_file = image.colorspace_settings.name, image.source != "GENERATED" and image.packed_file is None
-        return cls(image.name, space, image.alpha_mode, image.is_float, is_associated(image), in_file, working_space())
+        associated, kind = is_associated(image), image.file_format
+        return cls(
+            image.name, space, image.alpha_mode, image.is_float, associated, in_file, kind, working_space()
+        )  # fmt: skip
 
     @property
     def times_alpha(self) -> int:
@@ -66,11 +72,14 @@ def encoded(look: ImageLook, pixels: np.ndarray) -> Image:
     if look.alpha_mode == "NONE":
         pixels[..., 3] = 1.0
     if look.is_float:
-        # Blender has made them linear.
+        # Blender has made them linear. Cycles reads files by itself, and takes from Blender what is packed or painted.
         pixels[..., :3] *= WHITE_IN_CYCLES.get(space, 1.0)
-        if look.is_srgb:
+        is_srgb = look.is_srgb and look.is_in_file
+        if look.is_in_file and look.is_associated and look.file_format in _MULTIPLIED_BY_ALPHA:
+            _as_in_file(look, pixels)
+        elif is_srgb:
             pixels[..., :3] = encode_srgb(pixels[..., :3])
-        return Image(look.name, pixels, "SRGB" if look.is_srgb else "LINEAR")
+        return Image(look.name, pixels, "SRGB" if is_srgb else "LINEAR")
     if look.needs_blender:
         encoded = pixels[..., :3]
         if look.times_alpha == 2:
@@ -84,6 +93,22 @@ def encoded(look: ImageLook, pixels: np.ndarray) -> Image:
         colors = _times_alpha(pixels) if look.times_alpha == 2 else pixels[..., :3].astype(np.uint16)
         pixels[..., :3] = colors * pixels[..., 3:] // 255
     return Image(look.name, pixels, encoding)
+
+
+def _as_in_file(look: ImageLook, pixels: np.ndarray) -> None:
+    """Bring linear colors, which Blender has multiplied by alpha, to what Cycles makes of the file of floats.
+
+    Cycles does not ask whether the user takes the file's colors for straight.
+    """
+    if look.is_srgb or look.alpha_mode == "STRAIGHT":
+        alpha = np.where(pixels[..., 3:] > 0.0, pixels[..., 3:], np.float32(1.0))
+        pixels[..., :3] /= alpha
+        if look.is_srgb:
+            pixels[..., :3] = encode_srgb(pixels[..., :3])
+        if look.alpha_mode == "PREMUL":
+            pixels[..., :3] *= alpha
+    if not _MULTIPLIED_BY_ALPHA[look.file_format]:
+        pixels[..., :3] *= pixels[..., 3:]
 
 
 def _times_alpha(pixels: np.ndarray) -> np.ndarray:

@@ -227,7 +227,7 @@ def _multilayer_pass(image: bpy.types.Image, loaded: bpy.types.Image, selection:
         pixels = read_pass(path, selection)
     if pixels is None:
         return None
-    look = replace(ImageLook.of(image), is_float=True)
+    look = replace(ImageLook.of(image), is_float=True, file_format="")
     is_data = pixels.shape[-1] < 3
     pixels = _four_channels(pixels, is_float=True)
     if is_data:

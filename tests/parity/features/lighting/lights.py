@@ -64,6 +64,16 @@ for _group, _rows in LIGHTS.items():
         lights(_group, _name, _light(_kind, **_properties), effort=2 if "spread" in _properties else 1)
 
 
+def _sheared_spot(energy: float = 60.0, **properties: object) -> None:
+    """A spot that turns within a parent of uneven scale, which shears it."""
+    made = light("SPOT", energy, place(turn=(-20.0, 25.0, 30.0)), **properties)
+    uneven = place(at=(0.7, -0.9, 2.8), turn=(25.0, 0.0, 20.0), scale=(1.3, 0.7, 1.0))
+    made.parent = link_object(None, uneven, "Parent")
+
+
+lights("Spot Light", "sheared", lambda: _sheared_spot(spot_size=1.0, spot_blend=0.2, shadow_soft_size=0.05))
+
+
 def light_with_nodes(kind, feed, where=None, **properties):
     """A light whose emission is fed by ``feed(net)``: color and strength; the camera sees it where a place is given."""
 

@@ -102,6 +102,8 @@ for _output in ("Vector", "Fac", "Alpha"):
         _prepare = attribute_values(_kind, "POINT", *ATTRIBUTES[_kind])
         value("Attribute", f"{_output} of {_kind}", _attribute(_output), prepare=_prepare)
 value("Attribute", "of an edge", _attribute("Fac"), 1.0, 0.2, attribute_values("FLOAT", "EDGE", "value", 1))
+for _name, _output in (("generated", "Vector"), ("generated", "Fac"), ("pointiness", "Fac")):
+    value("Attribute", f"{_output} of {_name}", _attribute(_output, name=_name), 1.0, 0.2)
 value("Attribute", "missing", _attribute(name="Nothing"), 1.0, 0.2, warns=True)
 
 

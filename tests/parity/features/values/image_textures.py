@@ -3,8 +3,10 @@
 
 import atexit
 import shutil
+import struct
 import tempfile
-from functools import cache
+import zlib
+from functools import cache, partial
 from pathlib import Path
 
 import bpy
@@ -34,11 +36,24 @@ def _pixels(width: int, height: int, seed: int) -> np.ndarray:
     return pixels
 
 
+def _write_deep(path: Path, pixels: np.ndarray) -> None:
+    """A png of (H, W, 4) numbers from 0 to 1 with 16 bits, which PIL does not write."""
+    height, width = pixels.shape[:2]
+    rows = np.round(65535 * pixels).astype(">u2").reshape(height, -1)
+    parts = {
+        b"IHDR": struct.pack(">IIBBBBB", width, height, 16, 6, 0, 0, 0),
+        b"IDAT": zlib.compress(b"".join(b"\0" + row.tobytes() for row in rows)), b"IEND": b"",
+    }  # fmt: skip
+    chunks = [struct.pack(">I", len(part)) + kind + part + struct.pack(">I", zlib.crc32(kind + part))
+              for kind, part in parts.items()]  # fmt: skip
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunks))
+
+
 @cache
 def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
-    """A small picture file: png, opaque (png without alpha), gray (png), deep (png with 16 bits), exr, multilayer
-    (exr)."""
-    path = folder() / f"{kind}_{width}x{height}{'.exr' if kind in {'exr', 'multilayer'} else '.png'}"
+    """A small picture file: png, opaque (png without alpha), gray (png), deep (png with 16 bits), deep_alpha (png with
+    16 bits and alpha), exr, exr_alpha, multilayer (exr)."""
+    path = folder() / f"{kind}_{width}x{height}{'.exr' if kind in {'exr', 'exr_alpha', 'multilayer'} else '.png'}"
     pixels = _pixels(width, height, 5)
     if kind == "premultiplied":
         pixels[..., :3] *= pixels[..., 3:]
@@ -49,10 +64,14 @@ def picture(kind: str = "png", width: int = 12, height: int = 8) -> str:
         depth = {"View.Depth.Z": np.float32(pixels[..., 3])}
         parts = [OpenEXR.Part(dict(header), layer, "View.Combined"), OpenEXR.Part(dict(header), depth, "View.Depth")]
         OpenEXR.File(parts).write(str(path))
-    elif kind == "exr":
+    elif kind in {"exr", "exr_alpha"}:
         planes = {c: np.float32(3.0 * pixels[..., k]) for k, c in enumerate("RGB")}
+        if kind == "exr_alpha":
+            planes["A"] = np.float32(pixels[..., 3])
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
         OpenEXR.File(header, planes).write(str(path))
+    elif kind == "deep_alpha":
+        _write_deep(path, pixels)
     elif kind == "deep":
         gray = np.uint16(65535 * pixels[..., 0])
         Image.fromarray(gray).save(path)
@@ -125,16 +144,35 @@ for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE"):
     value(GROUP, f"alpha {_alpha}, alpha", texture("Alpha", alpha=_alpha))
 
 
-def _color_over_alpha(alpha):
+def _color_over_alpha(give_image):
     def give(net):
-        node = net.node("TexImage", image=image("premultiplied" if alpha == "PREMUL" else "png", None, alpha))
+        node = net.node("TexImage", image=give_image())
         return net.out("MixRGB", inputs={0: node.outputs["Alpha"], 1: (0.9, 0.1, 0.1), 2: node.outputs["Color"]})
 
     return give
 
 
 for _alpha in ("STRAIGHT", "PREMUL", "CHANNEL_PACKED"):
-    value(GROUP, f"alpha {_alpha}, both outputs", _color_over_alpha(_alpha))
+    _given = partial(image, "premultiplied" if _alpha == "PREMUL" else "png", None, _alpha)
+    value(GROUP, f"alpha {_alpha}, both outputs", _color_over_alpha(_given))
+
+
+def _packed(kind, **settings):
+    made = image(kind, **settings)
+    made.pack()
+    return made
+
+
+for _alpha in ("STRAIGHT", "PREMUL"):
+    value(GROUP, f"16 bits, alpha {_alpha}", texture(kind="deep_alpha", alpha=_alpha))
+    for _space in ("sRGB", "Linear Rec.709"):
+        _give = texture(kind="exr_alpha", space=_space, alpha=_alpha)
+        value(GROUP, f"float, alpha {_alpha}, {_space}", _give, 0.1, 0.5)
+for _alpha in ("STRAIGHT", "CHANNEL_PACKED"):
+    _given = partial(image, "deep_alpha", alpha=_alpha)
+    value(GROUP, f"16 bits, alpha {_alpha}, both outputs", _color_over_alpha(_given))
+    _given = partial(_packed, "deep_alpha", alpha=_alpha)
+    value(GROUP, f"16 bits, packed, alpha {_alpha}, both outputs", _color_over_alpha(_given))
 _second = texture(inputs={"Vector": socket("UVMap", uv_map="Second")})
 value(GROUP, "in a second UV map", _second, prepare=second_uv)
 
@@ -161,14 +199,17 @@ def _generated_image(net):
     return net.out("TexImage", image=made)
 
 
-def _packed_image(net):
-    made = image("opaque")
-    made.pack()
+def _painted_float(net):
+    made = bpy.data.images.new("Painted", 8, 8, float_buffer=True)
+    made.colorspace_settings.name = "sRGB"
+    made.pixels.foreach_set(_pixels(8, 8, 9).astype(np.float32).ravel())
+    made.update()
     return net.out("TexImage", image=made)
 
 
 value(GROUP, "painted in Blender", _generated_image)
-value(GROUP, "packed", _packed_image)
+value(GROUP, "painted in Blender, float", _painted_float)
+value(GROUP, "packed", lambda net: net.out("TexImage", image=_packed("opaque")))
 
 
 def _tiles(net):

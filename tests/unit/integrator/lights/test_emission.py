@@ -10,9 +10,15 @@ from hypothesis import strategies as st
 from support.lobes import Lobe, LobeKind, material
 
 from rppm_addon.integrator.lights.environment import distribution_of
-from rppm_addon.integrator.lights.light_entry import spot_solid_angle, spread_constants, spread_integral
+from rppm_addon.integrator.lights.light_entry import (
+    light_entry,
+    spot_solid_angle,
+    spread_constants,
+    spread_integral,
+)
 from rppm_addon.integrator.lights.photon_allocation import apportion
 from rppm_addon.materials.traits.emitted import Emits, emits
+from rppm_addon.scene import Light, LightKind
 
 
 @settings(deadline=None, derandomize=True)
@@ -35,6 +41,22 @@ def test_shares_add_up(weights, photons):
 def test_hard_spot_has_the_flux_of_its_cone(angle):
     cosine = math.cos(angle / 2)
     assert spot_solid_angle(cosine, 0.0) == pytest.approx(2 * math.pi * (1 - cosine), rel=1e-3)
+
+
+def test_the_cone_of_a_sheared_spot_is_round_in_its_own_space():
+    matrix = np.eye(4)
+    matrix[:3, :3] = [[1.3, 0.2, -0.1], [0.0, 0.7, 0.4], [0.3, -0.2, 1.1]]
+    entry, _ = light_entry(Light("spot", LightKind.SPOT, matrix, np.ones(3), spot_angle=1.0), 1.0)
+    generator = np.random.default_rng(3)
+    directions = generator.normal(size=(500, 3))
+    local = directions @ np.linalg.inv(matrix[:3, :3]).T
+    cosines = -local[:, 2] / np.linalg.norm(local, axis=1)
+    seen = directions @ np.stack([entry["axis_u"], entry["axis_v"], entry["normal"]], axis=-1)
+    np.testing.assert_allclose(seen[:, 2] / np.linalg.norm(seen, axis=1), cosines, rtol=0, atol=1e-5)
+    within = directions[cosines >= entry["cosine_cone"]]
+    along = within @ entry["normal"] / np.linalg.norm(within, axis=1)
+    assert len(within) > 10
+    assert along.min() >= 1.0 - entry["spread_scale"]
 
 
 def test_soft_spot_has_the_flux_of_the_smooth_step():

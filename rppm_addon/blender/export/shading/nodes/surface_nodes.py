@@ -124,12 +124,16 @@ def _color_attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.
     return exporter.shared("attribute", snake_case(output.identifier), attribute, name)
 
 
+_STANDARD = {"generated": GENERATED, "pointiness": POINTINESS}
+"""Attributes that Cycles computes, by the names under which it finds them."""
+
+
 @handles("ATTRIBUTE")
 def _attribute(exporter: GraphExporter, node: bpy.types.Node, output: bpy.types.NodeSocket, path: Path) -> object:
     if node.attribute_type == "VIEW_LAYER":
         return _view_layer_attribute(exporter, node, output)
-    is_geometry = node.attribute_type == "GEOMETRY"
-    attribute = node.attribute_name if is_geometry else f"{node.attribute_type}:{node.attribute_name}"
+    is_geometry, attribute = node.attribute_type == "GEOMETRY", node.attribute_name
+    attribute = _STANDARD.get(attribute, attribute) if is_geometry else f"{node.attribute_type}:{attribute}"
     name = exporter.name_of(node)
     return exporter.shared("attribute", snake_case(output.identifier), attribute or NO_ATTRIBUTE, name)
 
