@@ -10,7 +10,6 @@ import numpy as np
 from ....gl.buffer_sets import BufferSet, StorageBuffer
 from ....gl.buffers.constants import Constants
 from ....gl.buffers.records import Record
-from ....gl.buffers.storage_blocks import StorageBlock
 from ....gl.context.context import Context
 from ....gl.programs.programs import ProgramLibrary
 from ...acceleration.instances import HitPaths, InstancedMeshes
@@ -45,13 +44,14 @@ EMITTER_INSTANCE = Record(
     stretch="float",
     probability="float",
     cumulated="float",
+    traits="uint",
 )
 """An instance of BottomLevelInstances, which has the same number: ``row``, ``pivot``, ``first_triangle``, ``mirrored``
 and ``set_code`` are as there. ``tree``, ``leaves``: where the nodes of its mesh's light tree begin, and how many leaves
 this has, 0 where the instance emits nothing. ``first_emitter``, ``emitter_count``: emissive triangles of its mesh, one
 for each triangle. ``leaf``: its own leaf of the light tree; ``stretch``: the square of the condition number of its
-matrix; ``probability``, ``cumulated``: EmissiveTriangle's."""
-StorageBlock("EmitterInstances", "EmitterLevels emitter_levels; EmitterInstance emitter_instances[];")
+matrix; ``probability``, ``cumulated``: EmissiveTriangle's; ``traits``: those of all of its triangles, and its LightLink, as in
+EmissiveTriangle."""
 
 INSTANCED_EMITTERS = {"EMITTERS": "lights/two_levels"}
 """Defines of programs for scenes with emissive instances that rays place in the world."""
@@ -66,7 +66,9 @@ class EmitterInstances(BufferSet):
     """
 
     remedy = "let fewer instances emit light"
-    _instances = StorageBuffer("emitter instances", EMITTER_INSTANCE, header=EMITTER_LEVELS, block="EmitterInstances")
+    _instances = StorageBuffer(
+        "emitter instances", EMITTER_INSTANCE, header=EMITTER_LEVELS, texel_bytes=16, block="EmitterInstances"
+    )
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
