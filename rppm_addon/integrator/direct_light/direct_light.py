@@ -131,7 +131,15 @@ class DirectLight(Stage):
             return False
         with context.timers.stage("direct light in media"):
             self._sample_lights(
-                self._sample_in_media.of(context.lights.emitters.instances), context, importons, band, iteration, segment, 0, 1)
+                self._sample_in_media.of(context.lights.emitters.instances),
+                context,
+                importons,
+                band,
+                iteration,
+                segment,
+                0,
+                1,
+            )
             self._cast(context, importons, iteration, segment, has_terminators=False)
         return True
 

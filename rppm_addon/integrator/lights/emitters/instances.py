@@ -17,7 +17,7 @@ from ...surfaces.gather_inputs import part_starts
 from ...surfaces.placements import FARTHEST
 from ..light_records import LIGHT_NODE
 from ..light_tree import widened
-from .meshes import MeshEmitters
+from .meshes import FoundEmitters, MeshEmitters
 
 INSTANCE_MEMBER = 1 << 31
 """In the members of leaves of the light tree: the rest is the number of an instance."""
@@ -62,7 +62,7 @@ class EmitterInstances(BufferSet):
     """The emissive instances of a scene that rays place in the world.
 
     ``leaves`` are their LIGHT_NODE records in the world; ``weights`` (n,) is what each emits, in proportion, and
-    ``power`` (3,) what all do, W.
+    ``power`` (3,) what all do, W; ``links`` (n,) are the numbers of their LightLinks.
     """
 
     remedy = "let fewer instances emit light"
@@ -76,6 +76,7 @@ class EmitterInstances(BufferSet):
         """The emitters of meshes that are in use."""
         self.leaves = LIGHT_NODE.zeros(0)
         self.weights, self.power = np.zeros(0), np.zeros(3)
+        self.links = np.zeros(0, np.int64)
         self._numbers = np.zeros(0, np.int64)
         """(n,) the instances that emit, by their numbers among those that rays place."""
         self._which = np.zeros(0, np.int64)
@@ -87,15 +88,16 @@ class EmitterInstances(BufferSet):
         """True where the scene has emissive instances that rays place in the world: programs have other defines."""
         return len(self._numbers) > 0
 
-    def place(self, instanced: InstancedMeshes | None, meshes: list[MeshEmitters], which: np.ndarray) -> None:
-        """Take the instances that rays place in the world. ``meshes``: emitters; ``which``: (instances,) those of each
-        instance, -1 for none."""
+    def place(self, instanced: InstancedMeshes | None, found: FoundEmitters) -> None:
+        """Take the instances that rays place in the world."""
+        which = found.which
         if instanced is not None and len(which):
             with np.errstate(invalid="ignore"):  # triangles that lie nowhere, or too far off, are gathered as points
                 which = np.where((np.abs(instanced.boxes) < FARTHEST).all(axis=(1, 2)), which, -1)
         self._numbers = np.flatnonzero(which >= 0)
         self._which = which[self._numbers]
-        self.meshes, self.power = meshes, np.zeros(3)
+        self.meshes, self.power = found.meshes, np.zeros(3)
+        self.links = found.links[self._numbers]
         self.leaves, self.weights = LIGHT_NODE.zeros(len(self._numbers)), np.zeros(len(self._numbers))
         self._records = EMITTER_INSTANCE.zeros(0)
         if instanced is None or not self.are_there:
@@ -105,13 +107,15 @@ class EmitterInstances(BufferSet):
         for name in ("row0", "row1", "row2", "pivot", "set_code"):
             records[name] = instanced.entries[name]
         records["first_triangle"] = instanced.mesh_first_triangles[instanced.which]
-        records["mirrored"] = instanced.are_mirrored
-        for number, mesh in enumerate(meshes):
+        records["mirrored"], records["traits"] = instanced.are_mirrored, found.traits
+        for number, mesh in enumerate(found.meshes):
             is_of_mesh = self._which == number
             of_mesh = self._numbers[is_of_mesh]
             records["leaves"][of_mesh], records["emitter_count"][of_mesh] = len(mesh.nodes) // 2, len(mesh.records)
             placed, scales, records["stretch"][of_mesh] = placed_roots(mesh, instanced.matrices[of_mesh])
             placed["member"] = INSTANCE_MEMBER | of_mesh
+            scales *= found.strengths[of_mesh]
+            placed["intensity"] = mesh.nodes["intensity"][1] * scales
             self.leaves[is_of_mesh], self.weights[is_of_mesh] = placed, mesh.nodes["intensity"][1] * scales
             self.power = self.power + mesh.power * scales.sum()
 
