@@ -23,7 +23,7 @@ COUNT = 60
 def by_node(kind: str, output: str) -> Material:
     """Emission whose strength a node gives, without its sign."""
     graph = NodeGraph()
-    strength = graph.add("math", "value", operation="ABSOLUTE", value=graph.add(kind, output))
+    strength = graph.add("math", "value", options={"operation": "ABSOLUTE"}, value=graph.add(kind, output))
     graph.surface = graph.add("emission", "emission", color=(1.0, 0.7, 0.4), strength=strength)
     return Material(f"by {output}", graph)
 
@@ -78,7 +78,9 @@ def test_emission_by_place(mapper, mode):
 def test_choices_follow_what_each_instance_emits(mapper):
     """In proportion to its random number, and never less than a twentieth of the mean."""
     scene = glowing(COUNT, glow=by_node("object_info", "random"), others=False)
-    mapper.build(with_instances(scene, random=lambda number: float(number % 4), matrix=lambda _: scenes.placed(0, 0, 1)))
+    mapper.build(
+        with_instances(scene, random=lambda number: float(number % 4), matrix=lambda _: scenes.placed(0, 0, 1))
+    )
     weights = emitters_of(mapper).instances.weights
     expected = np.maximum(np.arange(COUNT) % 4, 0.05 * 1.5)
     np.testing.assert_allclose(weights / weights.mean(), expected / expected.mean(), rtol=1e-5)
@@ -110,7 +112,7 @@ def test_instances_that_all_emit_nothing(mapper):
 
 LINKS = [None, LightLinking(light_set_membership=0b10), LightLinking(light_set_membership=0b01),
          LightLinking(shadow_set_membership=0b01)]  # fmt: skip
-"""Of these instances, some light the floor alone, some all but the floor, and some through what is above the floor."""
+"""Links of instances that light all, the floor alone, all but the floor, and through what is above the floor."""
 
 
 def linked(instancing: Instancing, mode: DirectLight) -> Scene:
@@ -160,8 +162,8 @@ def test_light_on_shadow_catchers(mapper):
 
 
 def test_a_closed_form(mapper):
-    """A point of a floor under n balls of radius r at height h, of radiance L / n each: pi L r^2 / h^2 as the distance
-    grows, times the albedo over pi."""
+    """Balls in one place high above a floor, whose radiances are together 1: their area as seen from the floor over the
+    square of the height, times the albedo over pi. None is in the way of another's nearest triangles."""
     scene = glowing(COUNT, glow=by_node("object_info", "random"), others=False, photons=64)
     scene.world = World(np.zeros(3))
     scene = with_instances(
@@ -171,6 +173,5 @@ def test_a_closed_form(mapper):
     ball = scene.meshes[1]
     corners = 0.2 * ball.positions[ball.corner_vertices[ball.triangle_corners]].astype(np.float64)
     across = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    # Coincident balls do not hide each other's light where none stops shadow rays to itself.
     projected = 0.5 * np.abs(across[:, 2]).sum()
     assert frame == pytest.approx(0.5 * projected / 64.0 * np.array([1.0, 0.7, 0.4]) / np.pi, rel=0.02)

@@ -26,7 +26,7 @@ LEAST = 0.05
 
 @dataclass
 class InstanceEmission:
-    """What the triangles of a mesh emit on some of its instances, and what each of the instances emits."""
+    """Emission of a mesh's triangles on some of its instances, and how much each of the instances emits."""
 
     corners: np.ndarray
     """(k, 3, 3) of the triangles whose emission differs, in object space."""
@@ -37,7 +37,7 @@ class InstanceEmission:
     radiance: np.ndarray
     """(k, 3) mean over instances."""
     instances: list[Instance]
-    """Those with the mesh, when the strengths were found."""
+    """Instances with the mesh, when the strengths were found."""
     strengths: np.ndarray
     """(n,) what each emits by these triangles, as a multiple of what ``radiance`` says."""
 

@@ -50,8 +50,8 @@ EMITTER_INSTANCE = Record(
 and ``set_code`` are as there. ``tree``, ``leaves``: where the nodes of its mesh's light tree begin, and how many leaves
 this has, 0 where the instance emits nothing. ``first_emitter``, ``emitter_count``: emissive triangles of its mesh, one
 for each triangle. ``leaf``: its own leaf of the light tree; ``stretch``: the square of the condition number of its
-matrix; ``probability``, ``cumulated``: EmissiveTriangle's; ``traits``: those of all of its triangles, and its LightLink, as in
-EmissiveTriangle."""
+matrix; ``probability``, ``cumulated``: EmissiveTriangle's; ``traits``: those of all of its triangles, and its
+LightLink, as in EmissiveTriangle."""
 
 INSTANCED_EMITTERS = {"EMITTERS": "lights/two_levels"}
 """Defines of programs for scenes with emissive instances that rays place in the world."""

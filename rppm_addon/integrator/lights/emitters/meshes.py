@@ -73,7 +73,7 @@ class FoundEmitters:
     which: np.ndarray
     """int64, -1 for none."""
     strengths: np.ndarray
-    """What each instance emits, as a multiple of what the emitters of its mesh say."""
+    """(n,) what each instance emits, as a multiple of what the emitters of its mesh say."""
     traits: np.ndarray
     """int64, EmitterTraits that all triangles of an instance have, and its LightLink from EMITTER_LINK_SHIFT on."""
 
@@ -85,7 +85,7 @@ class FoundEmitters:
 
 @dataclass(frozen=True)
 class _Known:
-    """What is kept of a mesh with some materials."""
+    """Findings of a mesh with some materials, which are kept."""
 
     sources: tuple
     """The mesh and the materials, which keeps their ids theirs."""
