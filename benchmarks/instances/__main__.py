@@ -3,6 +3,7 @@
 
     python -m benchmarks.instances                                    # a forest and a city, made by scripts
     python -m benchmarks.instances --scenes city --divisor 10         # smaller
+    python -m benchmarks.instances --scenes --files grass.blend       # files by others, without an edit
     python -m benchmarks.instances --scenes --moves bmw27.blend       # frames of files with one moving object
 
 Prints tables of processor seconds of all threads, and of gigabytes of memory: of one process that has Blender, the
@@ -12,6 +13,7 @@ evaluated. Needs the bpy module.
 
 import argparse
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -37,17 +39,18 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--divisor", type=int, default=1, metavar="N", help="of the scenes' sizes (1)")
     parser.add_argument("--folder", type=Path, default=ROOT / "out/benchmark_scenes/instances",
                         help="where the scenes are kept (out/benchmark_scenes/instances)")  # fmt: skip
+    parser.add_argument("--files", nargs="*", type=Path, default=[], metavar="FILE", help=".blend files beside these")
     parser.add_argument(
         "--moves", nargs="*", type=Path, default=[], metavar="FILE", help=".blend files or saved scenes"
     )
     parser.add_argument("--frames", type=int, default=FRAMES, help=f"of each of these ({FRAMES})")
     options = parser.parse_args(arguments)
-    for name in options.scenes:
-        path = saved(name, options.divisor, options.folder)
-        print(f"| {name} | " + " | ".join(_COLUMNS) + " |\n|---" + "|--:" * len(_COLUMNS) + "|", flush=True)
+    scenes = [saved(name, options.divisor, options.folder) for name in options.scenes]
+    for path in [*scenes, *options.files]:
+        print(f"| {path.stem} | " + " | ".join(_COLUMNS) + " |\n|---" + "|--:" * len(_COLUMNS) + "|", flush=True)
         for engine in options.engines:
             figures = measure(engine, path)
-            cells = " | ".join(f"{figures[column]:.2f}" for column in _COLUMNS)
+            cells = " | ".join(f"{figures.get(column, math.nan):.2f}" for column in _COLUMNS)
             print(f"| {engine} | {cells} |", flush=True)
             others = ", ".join(f"{key} {value:.2f}" for key, value in figures.items() if key not in _COLUMNS)
             if others:

@@ -20,7 +20,7 @@ from rppm_addon.integrator.progressive import ProgressivePhotonMapper
 from rppm_addon.scene import Scene
 from rppm_addon.scene.storage.sharing import share
 
-from .scenes import move
+from .scenes import has_moved, move, settle
 
 _SAMPLES = 3
 _GB = 1e9
@@ -68,13 +68,14 @@ def rppm(figures: dict[str, float]) -> None:
     sample(mapper)
     figures["sample"] = statistics.median(_seconds(lambda: sample(mapper)) for _ in range(_SAMPLES))
     figures["peak"] = _memory()
-    for kind in ("first edit", "edit"):
+    for kind in ("first edit", "edit") if has_moved() else ():
         move()
         bpy.context.view_layer.update()
         figures[f"{kind} exported"] = _seconds(export)
         figures[kind] = _seconds(lambda: take(mapper, scenes[-2]))
     figures["device"] = sum(mapper.memory_bytes.values()) / _GB
-    figures["peak edited"] = _memory()
+    if has_moved():
+        figures["peak edited"] = _memory()
     mapper.release()
     again = ProgressivePhotonMapper(context, library)
     figures["first build"] = _seconds(lambda: take(again))
@@ -97,9 +98,10 @@ def cycles(figures: dict[str, float]) -> None:
     more, one = render(1 + 4 * _SAMPLES), render(1)
     figures["sample"] = max(more - one, 0.0) / (4 * _SAMPLES)
     figures["first build"] = whole - figures["sample"]
-    move()
-    figures["edit"] = render(1) - figures["sample"]
-    figures["peak edited"] = _memory()
+    if has_moved():
+        move()
+        figures["edit"] = render(1) - figures["sample"]
+        figures["peak edited"] = _memory()
 
 
 _ENGINES: dict[str, Callable[[dict[str, float]], None]] = {"rppm": rppm, "cycles": cycles}
@@ -109,6 +111,7 @@ def main(engine: str, path: str) -> None:
     """Print figures of an engine and a .blend file as JSON: processor seconds, and gigabytes of this process."""
     rppm_addon.register()
     bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    settle()
     bpy.context.evaluated_depsgraph_get().update()
     figures = {"Blender": _memory(is_peak=False)}
     _ENGINES[engine](figures)

@@ -156,6 +156,19 @@ def saved(name: str, divisor: int, folder: Path) -> Path:
     return path
 
 
+def settle() -> None:
+    """Give the open file the resolution of the scenes, and show the children of particles that are rendered."""
+    render = bpy.context.scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = WIDTH, HEIGHT, 100
+    for particles in bpy.data.particles:
+        particles.child_percent = particles.rendered_child_count
+
+
+def has_moved() -> bool:
+    """Return True where the open file is one of these scenes, of which one instance can be moved."""
+    return MOVED in bpy.data.objects
+
+
 def move() -> None:
     """Move one instance of the open scene by a meter."""
     moved = bpy.data.objects[MOVED]

@@ -67,7 +67,6 @@ class PhaseFunctionKind(enum.IntEnum):
 
 PHASE_FUNCTION = Record("PhaseFunction", scattering="vec3", kind="uint", parameters="vec4")
 """A part of a medium's scattering: its scattering coefficient, 1/m, and the phase function by which it scatters."""
-StorageBlock("PhaseFunctions", "PhaseFunction phase_functions[];")
 Constants("PhaseFunctionKinds", PHASE=PhaseFunctionKind)
 MEDIA_BITS = 20
 """Bits that paths have for the numbers of the media that they are in (shaders/materials/medium.glsl)."""

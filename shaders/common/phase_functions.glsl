@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Phase functions, 1/sr, by the cosine between the directions in which light travels before and after it is scattered:
 // 1 is straight on. Each is normalized over the sphere and sampled exactly, by the inverse of its distribution of
-// cosines. With MEDIA the includer includes materials/medium.glsl before and declares the block PhaseFunctions.
+// cosines. With MEDIA the includer includes materials/medium.glsl before.
 
 #include <PhaseFunction>
 #include <PhaseFunctionKinds>
@@ -154,13 +154,22 @@ float sample_phase_function(PhaseFunction f, float u) {
 }
 
 #ifdef MEDIA
+layout(rgba32ui) restrict readonly uniform uimageBuffer PhaseFunctions;
+
+// Read as texels: programs that sample lights have no storage block left.
+PhaseFunction phase_function(uint k) {
+    uvec4 first = imageLoad(PhaseFunctions, 2 * int(k));
+    vec4 parameters = uintBitsToFloat(imageLoad(PhaseFunctions, 2 * int(k) + 1));
+    return PhaseFunction(uintBitsToFloat(first.xyz), first.w, parameters);
+}
+
 #ifdef HETEROGENEOUS_MEDIA
 // What the scattering coefficients of a medium's phase functions are multiplied by at a place.
 vec3 scattering_factor(uint medium, PlaceOnRay at) {
     if (!has_grid(medium)) return vec3(1.0);
     vec3 sum = vec3(0.0);
     uint first = media[medium].first_function, end = first + media[medium].function_count;
-    for (uint k = first; k < end; ++k) sum += phase_functions[k].scattering;
+    for (uint k = first; k < end; ++k) sum += phase_function(k).scattering;
     return grid_coefficients(medium, at).scattering / max(sum, vec3(1e-30));
 }
 #endif
@@ -170,7 +179,7 @@ vec3 medium_scattered_phase(uint medium, PlaceOnRay at, float cosine) {
     vec3 sum = vec3(0.0);
     uint first = media[medium].first_function, end = first + media[medium].function_count;
     for (uint k = first; k < end; ++k)
-        sum += phase_functions[k].scattering * evaluate_phase_function(phase_functions[k], cosine);
+        sum += phase_function(k).scattering * evaluate_phase_function(phase_function(k), cosine);
 #ifdef HETEROGENEOUS_MEDIA
     if (end > first) sum *= scattering_factor(medium, at);
 #endif
@@ -200,7 +209,7 @@ PhaseFunction sample_path_phase_function(uint flags, PlaceOnRay at, vec3 weight,
     for (;;) {
         uint first = media[medium].first_function, end = first + media[medium].function_count;
         for (uint k = first; k < end; ++k) {
-            PhaseFunction found = phase_functions[k];
+            PhaseFunction found = phase_function(k);
 #ifdef HETEROGENEOUS_MEDIA
             found.scattering *= scattering_factor(medium, at);
 #endif

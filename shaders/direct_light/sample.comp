@@ -9,6 +9,7 @@
 // lint: PORTALS=1
 // lint: COUNTS_BOUNCES=1
 // lint: EMITTERS=lights/two_levels
+// lint: EMITTERS=lights/two_levels MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: RAY_PORTALS=1
 // Shadow rays from the camera paths' vertices to a sampled light, or to one that a smooth surface reflects.
 
@@ -22,7 +23,7 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/transparency.glsl"
 #include "common/path_history.glsl"
-#include EMITTERS "direct_light/media.glsl"
+#include "direct_light/media.glsl"
 #include "materials/medium.glsl"
 uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"

@@ -13,7 +13,7 @@ from ...scene.errors import DeviceError
 
 NEEDS: Mapping[str, tuple[int, str]] = {
     "GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS": (16, "storage blocks in a compute shader"),
-    "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS": (10, "storage blocks in a fragment shader"),
+    "GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS": (9, "storage blocks in a fragment shader"),
     "GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS": (5, "storage blocks in a vertex shader"),
     "GL_MAX_COMBINED_SHADER_STORAGE_BLOCKS": (16, "storage blocks in a program"),
     "GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS": (16, "bindings of storage blocks"),

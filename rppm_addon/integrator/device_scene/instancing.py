@@ -4,7 +4,7 @@
 import numpy as np
 
 from ...gl.context.context import Context
-from ...materials.traits.emitted import emits_alike, glowing_materials
+from ...materials.traits.emitted import glowing_materials
 from ...scene.meshes import Instance, Mesh
 from ...scene.scene import Scene
 from ...scene.settings import FirstCameraHits, Instancing
@@ -98,9 +98,8 @@ def instanced_members(
     """(instances,) bool, the instances that are not expanded to world triangles; None for none.
 
     These are instances of meshes that occur more than once, or that move or bend, but for one that is baked and for
-    grids of volumes. Those that emit light are such of meshes that occur more than once, and
-    keep their shape while the shutter is open, with materials that emit the same from all, without Light Linking, in
-    scenes without media and shadow catchers. columns: of the scene's instances, at any moment; moved:
+    grids of volumes. Those that emit light are such of meshes that occur more than once, and keep their shape while the
+    shutter is open. columns: of the scene's instances, at any moment; moved:
     MovedInstances.follow. is_software: whether the processor stands in for a GPU.
     """
     wanted = scene.settings.instancing
@@ -113,9 +112,9 @@ def instanced_members(
         return None
     glowing = glowing_materials(scene.materials)
     glows = columns.have(glowing)
-    may_be = _may_be_instanced(scene, columns, glowing)
-    if glows.any():
-        may_be &= ~glows | _may_share_emitters(scene, columns)
+    may_be = _may_be_instanced(scene, columns)
+    if glows.any() and scene.shutter is not None:
+        may_be &= ~(glows & _instances_of([deformation.mesh for deformation in scene.shutter.meshes], scene))
     counts = np.bincount(meshes[may_be], minlength=len(scene.meshes))
     shared = may_be & (counts[meshes] > 1)
     if is_automatic:
@@ -125,11 +124,10 @@ def instanced_members(
     return chosen if chosen.any() else None
 
 
-def _may_be_instanced(scene: Scene, columns: InstanceColumns, glowing: set[int]) -> np.ndarray:
-    """(instances,) bool. glowing: the materials that emit light."""
-    excluded = {number for number in glowing if not emits_alike(scene.materials[number].graph)}
+def _may_be_instanced(scene: Scene, columns: InstanceColumns) -> np.ndarray:
+    """(instances,) bool, those that rays may place in the world."""
     whole = np.array([mesh.volume is None for mesh in scene.meshes], bool)
-    result = whole[columns.meshes] & ~columns.have(excluded)
+    result = whole[columns.meshes]
     if scene.camera.texels is not None:  # which know the triangles of what is baked by number
         result[scene.camera.texels.instance] = False
     return result
@@ -141,16 +139,3 @@ def _may_have_two_levels(scene: Scene, is_software: bool) -> bool:
     is_traced = is_software or settings.instancing is Instancing.TWO_LEVELS
     first_hits = (FirstCameraHits.TRACED, *((FirstCameraHits.AUTOMATIC,) if is_traced else ()))
     return settings.first_camera_hits in first_hits
-
-
-def _has_media(scene: Scene) -> bool:
-    return scene.world.volume is not None or any(material.interior is not None for material in scene.materials)
-
-
-def _may_share_emitters(scene: Scene, columns: InstanceColumns) -> np.ndarray:
-    """(instances,) bool, those whose mesh may have the same emitters for all. Programs that scatter light in media, and
-    those of shadow catchers, know world triangles alone."""
-    if _has_media(scene) or columns.catch_shadows.any():
-        return np.zeros(len(scene.instances), bool)
-    bending = [deformation.mesh for deformation in scene.shutter.meshes] if scene.shutter is not None else []
-    return ~columns.are_linked & ~np.isin(columns.meshes, bending)

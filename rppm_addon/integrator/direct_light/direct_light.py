@@ -80,7 +80,7 @@ class DirectLight(Stage):
         super().__init__(context, library, sizes)
         self._sample = EmitterProgram(library, "direct_light/sample.comp")
         if sizes.features.has_media:
-            self._sample_in_media = library.compute("media/in_scattering/sample_lights.comp")
+            self._sample_in_media = EmitterProgram(library, "media/in_scattering/sample_lights.comp")
         self._soften = library.compute("direct_light/terminator.comp")
         self._meet = library.compute("direct_light/meet.comp")
         self._pass = library.compute("direct_light/pass.comp")
@@ -130,7 +130,16 @@ class DirectLight(Stage):
         if context.settings.direct_light is not DirectLightMode.RAYS:
             return False
         with context.timers.stage("direct light in media"):
-            self._sample_lights(self._sample_in_media, context, importons, band, iteration, segment, 0, 1)
+            self._sample_lights(
+                self._sample_in_media.of(context.lights.emitters.instances),
+                context,
+                importons,
+                band,
+                iteration,
+                segment,
+                0,
+                1,
+            )
             self._cast(context, importons, iteration, segment, has_terminators=False)
         return True
 

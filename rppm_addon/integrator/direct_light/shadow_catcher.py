@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects of which the camera sees the shadows only."""
 
-from ...gl.buffer_sets import ComputeShader, StorageBuffer
+from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
+from ...gl.context.context import Context
+from ...gl.programs.programs import ProgramLibrary
 from ..camera_paths.importons import Importons
 from ..common.band import Band
 from ..common.records.rays import RAY
 from ..common.stage import Stage
 from ..common.stage_sizes import StageSizes, band_pixels
 from ..device_scene.stage_context import StageContext
+from ..lights.emitters.programs import EmitterProgram
 
 StorageBlock("CatcherVisibility", "uint catcher_visibility[];")
 Record("ShadowCatcherParameters", segment="uint", first_pixel="uint")
@@ -28,7 +31,9 @@ class ShadowCatcher(Stage):
     _triangles = StorageBuffer("triangles of lights of shadow catchers", "uint", band_pixels, block="LightTriangles")
     lit = StorageBuffer("lit shadow catchers", "uint", band_pixels, block="CatcherVisibility")
 
-    _program = ComputeShader("direct_light/shadow_catcher/cast.comp")
+    def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
+        super().__init__(context, library, sizes)
+        self._program = EmitterProgram(library, "direct_light/shadow_catcher/cast.comp") if self.is_on else None
 
     @classmethod
     def is_needed(cls, sizes: StageSizes) -> bool:
@@ -37,11 +42,11 @@ class ShadowCatcher(Stage):
 
     def cast(self, context: StageContext, importons: Importons, band: Band, segment: int) -> None:
         """Fill ``lit`` for the resolved vertices of the active camera paths, before they scatter on."""
-        if not self.is_on:
+        if self._program is None:
             return
         with context.timers.stage("shadow catcher"):
             importons.active.run(
-                self._program,
+                self._program.of(context.lights.emitters.instances),
                 {**context.blocks, **importons.blocks, **self.blocks},
                 {"segment": segment, "first_pixel": band.first_pixel},
             )

@@ -354,11 +354,11 @@ class Geometry(BufferSet):
         most = self._hits.listed_count
         return [slice(start, min(start + most, count)) for start in range(0, count, most)]
 
-    def gather_listed(self, placement: int, triangles: np.ndarray) -> np.ndarray:
-        """Make world triangles of triangles (n,) of the mesh of a placement that is not expanded, while no paths are
-        traced; returns their numbers, (n,)."""
+    def gather_listed(self, placements: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+        """Make world triangles of triangles (n,) of the meshes of placements (n,) that are not expanded, while no paths
+        are traced; returns their numbers, (n,)."""
         outputs = self.triangles, self.attributes
-        return self._hits.gather_listed(placement, triangles, self._inputs.blocks, outputs, self.center)
+        return self._hits.gather_listed(placements, triangles, self._inputs.blocks, outputs, self.center)
 
     def _require_triangles(self, instances: list[Instance], lengths: np.ndarray) -> bool:
         """Have room for the triangles of instances, which have so many each (n,); returns whether the buffers are new.

@@ -81,18 +81,18 @@ class HitTriangles(BufferSet):
 
     def gather_listed(
         self,
-        placement: int,
+        placements: np.ndarray,
         triangles: np.ndarray,
         blocks: Mapping[str, Bindable],
         outputs: tuple[GrowingBuffer, GrowingBuffer],
         fallback_point: np.ndarray,
     ) -> np.ndarray:
-        """Write triangles (n,) of the mesh of a placement while no paths are traced; returns their numbers, (n,).
+        """Write triangles (n,) of the meshes of placements (n,) while no paths are traced; returns their numbers, (n,).
 
         ``blocks``, ``outputs``, ``fallback_point``: as of gather.
         """
         place, count = self.first_hits[HitPaths.PHOTON], len(triangles)
-        origins = np.stack([np.full(count, placement), triangles], axis=1).astype(np.uint32)
+        origins = np.stack([placements, triangles], axis=1).astype(np.uint32)
         self.origins.write(origins, self.origins.item_size * place)
         ((written,), (attributes,)) = (buffer.ranges(count, self.first + place) for buffer in outputs)
         self._gather_listed.run(

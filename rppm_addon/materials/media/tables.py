@@ -30,7 +30,7 @@ class MediaTables(BufferSet):
 
     remedy = "use fewer materials with volumes"
     _media = StorageBuffer("media", MEDIUM, block="Media")
-    _phase_functions = StorageBuffer("phase functions", PHASE_FUNCTION, block="PhaseFunctions")
+    _phase_functions = StorageBuffer("phase functions", PHASE_FUNCTION, texel_bytes=16, block="PhaseFunctions")
     _grids = Part(MediumGrids)
     emissive = Part(EmissiveMedia)
 

@@ -158,8 +158,8 @@ class AccelerationSettings(SettingGroup):
             Instancing.TWO_LEVELS: (
                 "Two Levels",
                 "Instances share the triangles of their mesh: memory does not grow with their number, and moving them "
-                "rebuilds little. Volume objects, and what emits light that differs from instance to instance, are "
-                "expanded all the same. The camera traces its first hits",
+                "rebuilds little. Boxes of Volume objects, and what glows and bends under motion blur, are expanded "
+                "all the same. The camera traces its first hits",
             ),
         },
     )

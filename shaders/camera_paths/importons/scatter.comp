@@ -13,6 +13,7 @@
 // lint: COUNTS_BOUNCES=1 CLAMPS_LIGHT=1
 // lint: COUNTS_BOUNCES=1 CLAMPS_LIGHT=1 FILTERS_GLOSSY=1
 // lint: EMITTERS=lights/two_levels
+// lint: EMITTERS=lights/two_levels MEDIA=1 HETEROGENEOUS_MEDIA=1
 // TraceImportons: at the end of the ray of a camera path, add the emission along the ray, leave an importon for the
 // lobes that store photons, and sample the next ray. The verbs are those of pbrt-v4's wavefront integrator.
 
@@ -26,7 +27,7 @@ layout(local_size_x = 64) in;
 #include "common/gathering.glsl"
 #include "common/path_history.glsl"
 #include "common/world_light.glsl"
-#include EMITTERS "camera_paths/importons/media.glsl"
+#include "camera_paths/importons/media.glsl"
 #include "materials/medium.glsl"
 uniform Parameters { ScatterImportonsParameters parameters; };
 #include "lights/light_tree.glsl"

@@ -1,5 +1,7 @@
 #version 430 core
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lint:
+// lint: EMITTERS=lights/two_levels
 // A shadow ray from a catcher to one of several samples of the lights, chosen by the light that it would give:
 // how often it is free gives the fraction of the light that arrives (resampling, Talbot et al. 2005).
 
@@ -20,6 +22,7 @@ writeonly buffer ShadowRays;
 writeonly buffer Contributions;
 readonly buffer LightLinks;
 writeonly buffer LightTriangles;
+#include EMITTERS "lights/one_level/hits.glsl"
 
 const int CANDIDATES = 64;
 
@@ -45,9 +48,8 @@ void main() {
         vec2 u_place = next_random2(random);
         Light light = lights[choose_light((float(k) + u) / float(CANDIDATES))];
         LightSample sampled = sample_whole_light(light, closure.position, u_part, u_place);
-        uint link =
-            sampled.triangle == NO_TRIANGLE ? light.link : emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT;
-        bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != closure.triangle
+        uint link = sampled.triangle == NO_EMITTER ? light.link : emitter_link(sampled.triangle);
+        bool lights_diffuse = (light.flags & RAY_DIFFUSE) != 0u && sampled.triangle != hit_emitter(closure.triangle)
                               && has_set(light_links[link].light_sets, light_set);
         float given = largest(sampled.weight) * max(dot(shading, sampled.direction), 0.0) / light.selection_probability;
         if (!lights_diffuse || !(given > 0.0) || dot(geometric, sampled.direction) <= 0.0) continue;
@@ -58,7 +60,7 @@ void main() {
                 sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance) : INFINITY_DISTANCE;
             chosen = Ray(origin, closure.triangle, sampled.direction, reach);
             chosen_link = link;
-            light_triangles[index] = sampled.triangle;
+            light_triangles[index] = keep_sampled_emitter(sampled.triangle, index);
         }
     }
     shadow_rays[index] = chosen;

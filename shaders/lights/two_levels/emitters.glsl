@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emissive triangles of which some are those of instances that rays place in the world
-// (rppm_addon/integrator/lights/emitter_instances.py). Those of a mesh have their records once, in object space.
+// (rppm_addon/integrator/lights/emitters/instances.py). Those of a mesh have their records once, in object space.
 #include "common/placed_point.glsl"
 #include "common/random.glsl"
 
 uint emitter_number(EmitterNumber emitter) { return emitter.y; }
 
-// What is linked is expanded to world triangles.
-uint emitter_link(EmitterNumber triangle) {
-    return is_of_instance(triangle) ? 0u : emitter_traits(triangle.y) >> EMITTER_LINK_SHIFT;
+// What all triangles of the instance have in common, or those of a world triangle.
+uint common_traits(EmitterNumber triangle) {
+    return is_of_instance(triangle) ? emitter_instance(triangle.x).traits : emitter_traits(triangle.y);
 }
 
-// Scenes with media have no emissive instances.
-bool emitter_is_hidden_from_media(EmitterNumber triangle) { return false; }
+uint emitter_link(EmitterNumber triangle) { return common_traits(triangle) >> EMITTER_LINK_SHIFT; }
+
+bool emitter_is_hidden_from_media(EmitterNumber triangle) {
+    return (common_traits(triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u;
+}
 
 // The leaf of a triangle that a ray has hit, of which the number is 0 where it does not emit.
 EmitterNumber emitter_leaf(uint triangle) {
     EmitterNumber emitter = hit_emitter(triangle);
     if (!is_of_instance(emitter)) return in_world(uint(triangle_vertices[3u * triangle + 1u].w));
-    EmitterInstance instance = emitter_instances[emitter.x];
+    EmitterInstance instance = emitter_instance(emitter.x);
     if (instance.leaves == 0u) return in_world(0u);
     return uvec2(emitter.x, emissive_triangles[instance.first_emitter + emitter.y].triangle);
 }
 
 // The light sets of a triangle that emits (common/light_sets.glsl).
 float emitter_set_code(EmitterNumber triangle) {
-    return is_of_instance(triangle) ? emitter_instances[triangle.x].set_code : triangle_vertices[3u * triangle.y].w;
+    return is_of_instance(triangle) ? emitter_instance(triangle.x).set_code : triangle_vertices[3u * triangle.y].w;
 }
 
 mat3 instance_linear(EmitterInstance instance) {
@@ -50,7 +53,7 @@ EmissiveTriangle read_emitter(EmitterNumber emitter, out EmitterNumber triangle,
                               out vec3 v2) {
     EmissiveTriangle emissive = emissive_triangles[emitter.y];
     if (is_of_instance(emitter)) {
-        EmitterInstance instance = emitter_instances[emitter.x];
+        EmitterInstance instance = emitter_instance(emitter.x);
         triangle = uvec2(emitter.x, emitter.y - instance.first_emitter);
         instance_corners(instance, triangle.y, v0, v1, v2);
     } else {
@@ -72,10 +75,10 @@ uint search_emissive_triangle(uint first, uint count, float u) {
 }
 
 uint search_emitter_instance(float u) {
-    uint low = 0u, high = emitter_levels.instance_count - 1u;
+    uint low = 0u, high = emitter_levels().instance_count - 1u;
     while (low < high) {
         uint middle = (low + high) / 2u;
-        if (emitter_instances[middle].cumulated > u) high = middle;
+        if (emitter_instance(middle).cumulated > u) high = middle;
         else low = middle + 1u;
     }
     return low;
@@ -91,7 +94,7 @@ EmitterNumber choose_emitter(float u, vec2 place, out float probability) {
         return in_world(index);
     }
     uint number = search_emitter_instance(u);
-    EmitterInstance instance = emitter_instances[number];
+    EmitterInstance instance = emitter_instance(number);
     float before = instance.cumulated - instance.probability, steps = instance.probability * 16777216.0;
     float fine = unit_float(pcg4d(uvec4(floatBitsToUint(u), floatBitsToUint(place), iteration.number)).x);
     float within = clamp(((u - before) * 16777216.0 + fine) / steps, 0.0, 0.99999994);

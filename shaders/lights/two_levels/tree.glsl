@@ -35,7 +35,7 @@ struct WalkedTree {
 float even_fraction_of(uint leaves) { return EVEN_FRACTION_OF_TREE / float(max(findMSB(2u * leaves - 1u), 1)); }
 
 void enter_mesh(inout WalkedTree tree, uint number) {
-    tree.instance = emitter_instances[number];
+    tree.instance = emitter_instance(number);
     tree.first = tree.instance.tree;
     tree.leaves = tree.instance.leaves;
     tree.even_fraction = even_fraction_of(tree.leaves);
@@ -180,5 +180,5 @@ Hit intersect_emitters(vec3 origin, vec3 direction, uint from_triangle, uint lig
 // The triangle that intersect_emitters has found, as emitters are numbered.
 EmitterNumber met_triangle(Hit hit, EmitterNumber emissive) {
     if (!is_of_instance(emissive)) return in_world(emissive_triangles[emissive.y].triangle);
-    return uvec2(emissive.x, emissive.y - emitter_instances[emissive.x].first_emitter);
+    return uvec2(emissive.x, emissive.y - emitter_instance(emissive.x).first_emitter);
 }

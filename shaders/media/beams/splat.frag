@@ -16,7 +16,6 @@ uniform Parameters { BeamParameters parameters; };
 #include <PhotonBeam>
 #include <BeamTarget>
 readonly buffer Media;
-readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 readonly buffer PhotonBeams;

@@ -4,6 +4,8 @@
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1
 // lint: MEDIA=1 PORTALS=1
 // lint: MEDIA=1 RAY_PORTALS=1
+// lint: MEDIA=1 EMITTERS=lights/two_levels
+// lint: MEDIA=1 HETEROGENEOUS_MEDIA=1 EMITTERS=lights/two_levels
 // Shadow rays from points in scattering media, one on each camera ray: light that is scattered once. The point is
 // sampled as the media scatter light, or by the angle at which the light sees the ray (Kulla and Fajardo 2012,
 // Importance Sampling Techniques for Path Tracing in Participating Media); MIS combines both.
@@ -18,7 +20,6 @@ layout(local_size_x = 64) in;
 #include "common/camera_path.glsl"
 #include "common/path_depth.glsl"
 readonly buffer Media;
-readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 uniform Parameters { DirectLightParameters parameters; };
 #include "lights/light_tree.glsl"
@@ -34,6 +35,7 @@ writeonly buffer LightTriangles;
 writeonly buffer Contributions;
 writeonly buffer LightSplits;
 writeonly buffer ShadowMedia;
+#include EMITTERS "lights/one_level/hits.glsl"
 
 // The part of a ray on which light is scattered, and how.
 struct MediumSegment {
@@ -76,10 +78,11 @@ void leave_no_light(uint index) {
 LitPoint lit_point(vec3 position) { return LitPoint(position, vec3(0.0), true, 0u); }
 
 // The place of a light, about which points are sampled by their angle.
-vec3 light_center(Light light, uint emissive_triangle) {
+vec3 light_center(Light light, EmitterNumber emitter) {
     if (light.kind != LIGHT_MESH) return light.position;
     vec3 v0, v1, v2;
-    triangle_corners(emissive_triangles[emissive_triangle].triangle, v0, v1, v2);
+    EmitterNumber triangle;
+    read_emitter(emitter, triangle, v0, v1, v2);
     return (v0 + v1 + v2) / 3.0;
 }
 
@@ -167,7 +170,7 @@ void main() {
         sampled = sample_world_by_phase(sampled, path, at, vec3(u.w, v.zw));
 #endif
     if (!(pdf > 0.0) || !(largest(sampled.weight) > 0.0)) return;
-    if (sampled.triangle != NO_TRIANGLE && (emitter_traits(sampled.triangle) & EMITTER_HIDDEN_FROM_MEDIA) != 0u) return;
+    if (sampled.triangle != NO_EMITTER && emitter_is_hidden_from_media(sampled.triangle)) return;
     vec3 scattered = scattered_phase(path.flags, at, dot(sampled.direction, ray.direction));
     if (light.kind == LIGHT_WORLD) scattered *= world_mis_weight(path, at, scattered, light, sampled.pdf);
     if (parameters.crosses_media == 0u)
@@ -177,10 +180,10 @@ void main() {
     if (!(largest(radiance) > 0.0)) return;
     uint link = 0u;
     if (iteration.links_lights != 0u)
-        link = sampled.triangle != NO_TRIANGLE ? emitter_traits(sampled.triangle) >> EMITTER_LINK_SHIFT : light.link;
+        link = sampled.triangle != NO_EMITTER ? emitter_link(sampled.triangle) : light.link;
     contributions[index] =
         vec4(parameters.sample_weight * radiance, signed_code(scattered_light_is_gathered(path), link));
-    light_triangles[index] = sampled.triangle;
+    light_triangles[index] = keep_sampled_emitter(sampled.triangle, index);
     if (parameters.splits_light != 0u) light_splits[index] = LightSplit(vec3(0.0), choice.light, vec3(0.0), 0.0);
     float reach = sampled.distance < INFINITY_DISTANCE ? shadow_ray_length(sampled.distance) : INFINITY_DISTANCE;
     shadow_rays[index] = Ray(position, NO_TRIANGLE, sampled.direction, reach);

@@ -23,7 +23,6 @@ layout(local_size_x = 64) in;
 #include <Importon>
 uniform Parameters { GatherInMediaParameters parameters; };
 readonly buffer Media;
-readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"

@@ -17,7 +17,6 @@ layout(local_size_x = 64) in;
 #include "common/bsdf/closure.glsl"
 uniform Parameters { ScatterCameraPathsParameters parameters; };
 readonly buffer Media;
-readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"

@@ -20,7 +20,6 @@ layout(local_size_x = 64) in;
 #include "photons/path_flags.glsl"
 uniform Parameters { ScatterInMediaParameters parameters; };
 readonly buffer Media;
-readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 #include "media/free_flight.glsl"

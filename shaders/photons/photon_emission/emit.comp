@@ -5,6 +5,7 @@
 // lint: MEDIA=1 EMISSIVE_MEDIA=1
 // lint: MEDIA=1 HETEROGENEOUS_MEDIA=1 EMISSIVE_MEDIA=1
 // lint: EMITTERS=lights/two_levels
+// lint: EMITTERS=lights/two_levels MEDIA=1 HETEROGENEOUS_MEDIA=1 EMISSIVE_MEDIA=1
 // DirectPhotonHits, first half: photons leave the lights (paper section 4.3).
 
 layout(local_size_x = 64) in;

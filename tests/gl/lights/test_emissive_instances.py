@@ -17,7 +17,6 @@ from rppm_addon.integrator.lights.emitters import candidates, meshes
 from rppm_addon.integrator.lights.emitters.instances import INSTANCED_EMITTERS
 from rppm_addon.scene import AccelerationStructure, DirectLight, Instance, Instancing, Scene, World
 from rppm_addon.scene.errors import DeviceError
-from rppm_addon.scene.light_linking import LightLinking
 from rppm_addon.scene.materials import Material
 from rppm_addon.scene.node_graphs import Link, NodeGraph, ShaderNode
 
@@ -233,14 +232,6 @@ def test_instances_that_lie_nowhere_emit_nothing(mapper):
     picture = radiance_of(mapper, scene, 2)
     assert len(emitters_of(mapper).instances.leaves) == 17
     assert np.isfinite(picture).all() and picture.max() > 0.0
-
-
-def test_what_is_linked_is_expanded(mapper):
-    scene = glowing(20, others=False)
-    scene.instances[3] = dataclasses.replace(scene.instances[3], linking=LightLinking(light_set_membership=2))
-    mapper.build(scene)
-    assert len(emitters_of(mapper).instances.leaves) == 19
-    assert emitters_of(mapper).count == scene.meshes[1].triangle_count
 
 
 def test_instances_that_emit_nothing_are_no_emitters(mapper, monkeypatch):

@@ -113,8 +113,9 @@ def test_needs_are_those_of_the_shaders():
         if variant.name.endswith(".comp"):
             assert source.local_size <= 1024, variant.name
         texels = [line for line in source.text.splitlines() if re.search(r"uniform [iu]?image", line)]
-        # Those of software drivers, and voxels, for which programs have no storage block left.
-        assert all(re.search(r"uniform uimageBuffer (C|MediumVoxels;)", line) for line in texels)
+        # Those of software drivers, and those for which programs have no storage block left.
+        known = "C|MediumVoxels;|PhaseFunctions;|EmitterInstances;"
+        assert all(re.search(rf"uniform uimageBuffer ({known})", line) for line in texels)
         assert all(int(unit) < 16 for unit in re.findall(r"binding = (\d+)\) uniform \w*sampler", source.text))
     drawn = needed["GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS"] + needed["GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS"]
     together = max(needed["GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS"], drawn)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from ....materials.tables import MaterialTables
-from ....materials.traits.emitted import Emits, asks_for_path
+from ....materials.traits.emitted import Emits, asks_for_path, emits_alike
 from ....scene.errors import DeviceError
 from ....scene.materials import Material
 from ....scene.meshes import Instance, MeshShape, RayVisibility
@@ -32,6 +32,7 @@ class EmissiveMaterials:
         self._materials = scene.materials
         self._emits, self._count = materials.emits, len(scene.materials)
         self._varies = np.array([emits is Emits.VARYING for emits in self._emits], bool)
+        self._differs = np.array([not emits_alike(material.graph) for material in scene.materials], bool)
         self._dark = {index for index in range(self._count) if self._emits[index] is Emits.NOTHING}
         self._by_path = [
             m for m, material in enumerate(scene.materials) if m not in self._dark and asks_for_path(material.graph)
@@ -54,19 +55,27 @@ class EmissiveMaterials:
             return slots, np.zeros(0, np.int64)
         return slots, np.nonzero(emits[np.minimum(scene.meshes[instance.mesh].triangle_slots, len(slots) - 1)])[0]
 
+    def differ(self, kinds: np.ndarray) -> np.ndarray:
+        """(n,) bool, whether instances of a mesh with materials (n,) may emit different light."""
+        return self._differs[kinds]
+
     def vary(self, kinds: np.ndarray) -> np.ndarray:
         """(n,) bool, whether the emission of materials (n,) varies with place or direction."""
         return self._varies[kinds]
 
     def traits(self, instance: Instance, kinds: np.ndarray) -> np.ndarray:
-        """(n,) EmitterTraits of triangles of an instance with materials (n,), but for UNEVEN. Smooth surfaces look for
-        no emission that depends on the path that comes there."""
-        seen = is_seen_reflected(instance)
-        traits = int(EmitterTrait.REFLECTED) * (seen & np.isin(kinds, self._by_path, invert=True))
+        """(n,) EmitterTraits of triangles of an instance with materials (n,), but for UNEVEN."""
+        traits = self.mesh_traits(instance, kinds)
         links_leave_out_media = instance.linking is not None and not instance.linking.lights_media
         if links_leave_out_media or not instance.visibility & RayVisibility.VOLUME_SCATTER:
             traits += int(EmitterTrait.HIDDEN_FROM_MEDIA)
         return traits
+
+    def mesh_traits(self, instance: Instance, kinds: np.ndarray) -> np.ndarray:
+        """(n,) those of the same that follow from the materials, and from is_seen_reflected. Smooth surfaces look for
+        no emission that depends on the path that comes there."""
+        seen = is_seen_reflected(instance)
+        return int(EmitterTrait.REFLECTED) * (seen & np.isin(kinds, self._by_path, invert=True))
 
 
 def is_seen_reflected(instance: Instance) -> bool:

@@ -20,7 +20,7 @@ from ...common.records.rays import HIT, NO_TRIANGLE, RAY
 from ...common.require import require
 from ...surfaces.geometry import Geometry
 from ...surfaces.resolve import Resolve
-from ..light_links import NO_LINK, LightLinkTable
+from ..light_links import LightLinkTable
 from ..light_records import EMISSIVE_TRIANGLE, EMITTER_LINK_SHIFT, LIGHT_NODE, EmitterTrait
 from ..light_tree import leaf_numbers, morton_order, triangle_leaves
 from .candidates import STEPS, candidates, chances
@@ -89,10 +89,10 @@ class Emitters(BufferSet):
             )
         self.leaves = triangle_leaves(records, corners.reshape(-1, 3, 3))
         del corners, kinds
-        self._find_instances(scene, geometry, materials, resolve)
+        self._find_instances(scene, geometry, materials, resolve, links)
         if self.instances.are_there:
             self.leaves = np.concatenate([self.leaves, self.instances.leaves])
-        self.links = np.concatenate([numbers, np.full(len(self.instances.leaves), NO_LINK)])
+        self.links = np.concatenate([numbers, self.instances.links])
         self.order = morton_order(self.leaves)
         of_meshes = [mesh.records for mesh in self.instances.meshes]
         uneven = (bool((part["traits"] & EmitterTrait.UNEVEN).any()) for part in of_meshes)
@@ -124,12 +124,20 @@ class Emitters(BufferSet):
         numbers = leaf_numbers(self.order)[: self.count]
         self._leaf_numbers.upload(numbers if self.count else np.zeros(1, np.uint32))
 
-    def _find_instances(self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve) -> None:
+    def _find_instances(
+        self, scene: Scene, geometry: Geometry, materials: MaterialTables, resolve: Resolve, links: LightLinkTable
+    ) -> None:
         def ask(placement: int, *columns: np.ndarray) -> np.ndarray:
-            emission = functools.partial(self._emission_of_instance, resolve, geometry, placement)
+            def emission(triangles: np.ndarray, corners: np.ndarray, points: int) -> np.ndarray:
+                placements = np.full(len(triangles), placement)
+                return self._emission_of_instances(resolve, geometry, placements, triangles, corners, points)
+
             return self._ask(emission, *columns)
 
-        self.instances.place(geometry.instanced, *self.meshes.find(scene, geometry, materials, ask))
+        def ask_each(placements: np.ndarray, triangles: np.ndarray, corners: np.ndarray) -> np.ndarray:
+            return np.abs(self._emission_of_instances(resolve, geometry, placements, triangles, corners, _POINTS))
+
+        self.instances.place(geometry.instanced, self.meshes.find(scene, geometry, materials, links, ask, ask_each))
 
     def _mark_triangles(self, geometry: Geometry) -> None:
         """Have world triangles that emit carry their leaves and traits."""
@@ -169,21 +177,22 @@ class Emitters(BufferSet):
                 radiance[of_kind] = np.maximum(radiance[of_kind], _MIN_FRACTION * mean)
         return radiance
 
-    def _emission_of_instance(
+    def _emission_of_instances(
         self,
         resolve: Resolve,
         geometry: Geometry,
-        placement: int,
+        placements: np.ndarray,
         triangles: np.ndarray,
         corners: np.ndarray,
         points: int,
     ) -> np.ndarray:
-        """As _emission, of triangles (n,) of the mesh of an instance that rays place in the world."""
+        """As _emission, of triangles (n,) of the meshes of instances that rays place in the world, by their
+        placements (n,)."""
         parts = [
-            self._emission(resolve, geometry.gather_listed(placement, triangles[part]), corners[part], points)
+            self._emission(resolve, geometry.gather_listed(placements[part], triangles[part]), corners[part], points)
             for part in geometry.listed_parts(len(triangles))
         ]
-        return np.concatenate(parts)
+        return np.concatenate([np.zeros((0, 3)), *parts])
 
     def _emission(self, resolve: Resolve, triangles: np.ndarray, corners: np.ndarray, points: int) -> np.ndarray:
         """(n, 3) mean radiance at ``points`` places of each triangle, seen straight on."""

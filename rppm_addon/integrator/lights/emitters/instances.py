@@ -10,7 +10,6 @@ import numpy as np
 from ....gl.buffer_sets import BufferSet, StorageBuffer
 from ....gl.buffers.constants import Constants
 from ....gl.buffers.records import Record
-from ....gl.buffers.storage_blocks import StorageBlock
 from ....gl.context.context import Context
 from ....gl.programs.programs import ProgramLibrary
 from ...acceleration.instances import HitPaths, InstancedMeshes
@@ -18,7 +17,7 @@ from ...surfaces.gather_inputs import part_starts
 from ...surfaces.placements import FARTHEST
 from ..light_records import LIGHT_NODE
 from ..light_tree import widened
-from .meshes import MeshEmitters
+from .meshes import FoundEmitters, MeshEmitters
 
 INSTANCE_MEMBER = 1 << 31
 """In the members of leaves of the light tree: the rest is the number of an instance."""
@@ -45,13 +44,14 @@ EMITTER_INSTANCE = Record(
     stretch="float",
     probability="float",
     cumulated="float",
+    traits="uint",
 )
 """An instance of BottomLevelInstances, which has the same number: ``row``, ``pivot``, ``first_triangle``, ``mirrored``
 and ``set_code`` are as there. ``tree``, ``leaves``: where the nodes of its mesh's light tree begin, and how many leaves
 this has, 0 where the instance emits nothing. ``first_emitter``, ``emitter_count``: emissive triangles of its mesh, one
 for each triangle. ``leaf``: its own leaf of the light tree; ``stretch``: the square of the condition number of its
-matrix; ``probability``, ``cumulated``: EmissiveTriangle's."""
-StorageBlock("EmitterInstances", "EmitterLevels emitter_levels; EmitterInstance emitter_instances[];")
+matrix; ``probability``, ``cumulated``: EmissiveTriangle's; ``traits``: those of all of its triangles, and its
+LightLink, as in EmissiveTriangle."""
 
 INSTANCED_EMITTERS = {"EMITTERS": "lights/two_levels"}
 """Defines of programs for scenes with emissive instances that rays place in the world."""
@@ -62,11 +62,13 @@ class EmitterInstances(BufferSet):
     """The emissive instances of a scene that rays place in the world.
 
     ``leaves`` are their LIGHT_NODE records in the world; ``weights`` (n,) is what each emits, in proportion, and
-    ``power`` (3,) what all do, W.
+    ``power`` (3,) what all do, W; ``links`` (n,) are the numbers of their LightLinks.
     """
 
     remedy = "let fewer instances emit light"
-    _instances = StorageBuffer("emitter instances", EMITTER_INSTANCE, header=EMITTER_LEVELS, block="EmitterInstances")
+    _instances = StorageBuffer(
+        "emitter instances", EMITTER_INSTANCE, header=EMITTER_LEVELS, texel_bytes=16, block="EmitterInstances"
+    )
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: object = None) -> None:
         super().__init__(context, library, sizes)
@@ -74,6 +76,7 @@ class EmitterInstances(BufferSet):
         """The emitters of meshes that are in use."""
         self.leaves = LIGHT_NODE.zeros(0)
         self.weights, self.power = np.zeros(0), np.zeros(3)
+        self.links = np.zeros(0, np.int64)
         self._numbers = np.zeros(0, np.int64)
         """(n,) the instances that emit, by their numbers among those that rays place."""
         self._which = np.zeros(0, np.int64)
@@ -85,15 +88,16 @@ class EmitterInstances(BufferSet):
         """True where the scene has emissive instances that rays place in the world: programs have other defines."""
         return len(self._numbers) > 0
 
-    def place(self, instanced: InstancedMeshes | None, meshes: list[MeshEmitters], which: np.ndarray) -> None:
-        """Take the instances that rays place in the world. ``meshes``: emitters; ``which``: (instances,) those of each
-        instance, -1 for none."""
+    def place(self, instanced: InstancedMeshes | None, found: FoundEmitters) -> None:
+        """Take the instances that rays place in the world."""
+        which = found.which
         if instanced is not None and len(which):
             with np.errstate(invalid="ignore"):  # triangles that lie nowhere, or too far off, are gathered as points
                 which = np.where((np.abs(instanced.boxes) < FARTHEST).all(axis=(1, 2)), which, -1)
         self._numbers = np.flatnonzero(which >= 0)
         self._which = which[self._numbers]
-        self.meshes, self.power = meshes, np.zeros(3)
+        self.meshes, self.power = found.meshes, np.zeros(3)
+        self.links = found.links[self._numbers]
         self.leaves, self.weights = LIGHT_NODE.zeros(len(self._numbers)), np.zeros(len(self._numbers))
         self._records = EMITTER_INSTANCE.zeros(0)
         if instanced is None or not self.are_there:
@@ -103,13 +107,15 @@ class EmitterInstances(BufferSet):
         for name in ("row0", "row1", "row2", "pivot", "set_code"):
             records[name] = instanced.entries[name]
         records["first_triangle"] = instanced.mesh_first_triangles[instanced.which]
-        records["mirrored"] = instanced.are_mirrored
-        for number, mesh in enumerate(meshes):
+        records["mirrored"], records["traits"] = instanced.are_mirrored, found.traits
+        for number, mesh in enumerate(found.meshes):
             is_of_mesh = self._which == number
             of_mesh = self._numbers[is_of_mesh]
             records["leaves"][of_mesh], records["emitter_count"][of_mesh] = len(mesh.nodes) // 2, len(mesh.records)
             placed, scales, records["stretch"][of_mesh] = placed_roots(mesh, instanced.matrices[of_mesh])
             placed["member"] = INSTANCE_MEMBER | of_mesh
+            scales *= found.strengths[of_mesh]
+            placed["intensity"] = mesh.nodes["intensity"][1] * scales
             self.leaves[is_of_mesh], self.weights[is_of_mesh] = placed, mesh.nodes["intensity"][1] * scales
             self.power = self.power + mesh.power * scales.sum()
 

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....materials.tables import MaterialTables
-from ....scene.meshes import Instance, MeshShape
+from ....scene.meshes import Instance, MeshShape, RayVisibility
 from ....scene.scene import Scene
+from ...acceleration.instances import InstancedMeshes
 from ...surfaces.geometry import Geometry
-from ..light_records import EMISSIVE_TRIANGLE, EmitterTrait
+from ..light_links import LightLinkTable
+from ..light_records import EMISSIVE_TRIANGLE, EMITTER_LINK_SHIFT, EmitterTrait
 from ..light_tree import leaf_numbers, morton_order, tree_of, triangle_leaves
+from .by_instance import AskEach, InstanceEmission
 from .candidates import STEPS, EmissiveMaterials, areas_of, chances, is_seen_reflected
 
 Ask = Callable[[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
@@ -62,49 +65,118 @@ def mesh_emitters(records: np.ndarray, corners: np.ndarray, sides: int) -> MeshE
     )
 
 
+@dataclass(frozen=True)
+class FoundEmitters:
+    """Emitters of meshes, and which of these the instances have that rays place in the world, (n,) each."""
+
+    meshes: list[MeshEmitters]
+    which: np.ndarray
+    """int64, -1 for none."""
+    strengths: np.ndarray
+    """(n,) what each instance emits, as a multiple of what the emitters of its mesh say."""
+    traits: np.ndarray
+    """int64, EmitterTraits that all triangles of an instance have, and its LightLink from EMITTER_LINK_SHIFT on."""
+
+    @property
+    def links(self) -> np.ndarray:
+        """(n,) int64, LightLinks."""
+        return self.traits >> EMITTER_LINK_SHIFT
+
+
+@dataclass(frozen=True)
+class _Known:
+    """Findings of a mesh with some materials, which are kept."""
+
+    sources: tuple
+    """The mesh and the materials, which keeps their ids theirs."""
+    emitters: MeshEmitters
+    by_instance: InstanceEmission | None
+    """Where the instances emit different light."""
+    even_fraction: float
+    """Fraction of the power that all instances emit alike."""
+
+
 class EmissiveMeshes:
     """Finds the emitters of meshes, each once: instances that move change nothing of them."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple, tuple[tuple, MeshEmitters]] = {}
-        """By the ids of a mesh and of the materials of its slots, and whether smooth surfaces look for it: these, which
-        keeps the ids theirs, and the emitters."""
+        self._known: dict[tuple, _Known] = {}
+        """By the ids of a mesh and of the materials of its slots, and whether smooth surfaces look for it."""
 
     def forget(self) -> None:
         """Find all anew, as materials emit otherwise."""
         self._known = {}
 
     def find(
-        self, scene: Scene, geometry: Geometry, materials: MaterialTables, ask: Ask
-    ) -> tuple[list[MeshEmitters], np.ndarray]:
-        """Return the emitters of meshes, and (instances,) int64 which of these each instance has that rays place in the
-        world, -1 for none."""
+        self,
+        scene: Scene,
+        geometry: Geometry,
+        materials: MaterialTables,
+        links: LightLinkTable,
+        ask: Ask,
+        ask_each: AskEach,
+    ) -> FoundEmitters:
+        """Return the emitters of the instances that rays place in the world."""
+        known, self._known = self._known, {}
         instanced = geometry.instanced
         if instanced is None or not instanced.has_emitters:
-            self._known = {}
-            return [], np.zeros(0, np.int64)
+            return FoundEmitters([], np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64))
         glowing = EmissiveMaterials(scene, materials)
-        known, self._known = self._known, {}
-        found: list[MeshEmitters] = []
-        places: dict[tuple, int] = {}
-        which = np.full(len(instanced.placements), -1, np.int64)
-        for number in instanced.emitters.tolist():
-            placement = int(instanced.placements[number])
+        rows: dict[tuple, list[int]] = {}
+        for number, placement in zip(
+            instanced.emitters.tolist(), instanced.placements[instanced.emitters].tolist(), strict=True
+        ):
             instance = geometry.placements.instances[placement]
-            key = instance.mesh, tuple(instance.materials), is_seen_reflected(instance)
-            if key not in places:
-                sources = scene.meshes[instance.mesh], *glowing.of_slots(instance)
-                source_key = *map(id, sources), is_seen_reflected(instance)
-                _, emitters = known.get(source_key) or (None, _find(scene, placement, instance, glowing, ask))
-                self._known[source_key] = sources, emitters
-                places[key] = len(found) if len(emitters.nodes) else -1
-                found += [emitters] if len(emitters.nodes) else []
-            which[number] = places[key]
-        return found, which
+            rows.setdefault((instance.mesh, *instance.materials, is_seen_reflected(instance)), []).append(number)
+        found: list[MeshEmitters] = []
+        which = np.full(len(instanced.placements), -1, np.int64)
+        strengths = np.ones(len(which))
+        for numbers in rows.values():
+            placements = instanced.placements[numbers]
+            instances = [geometry.placements.instances[placement] for placement in placements.tolist()]
+            one = instances[0]
+            sources = scene.meshes[one.mesh], *glowing.of_slots(one)
+            key = *map(id, sources), is_seen_reflected(one)
+            kept = known.get(key)
+            if kept is None:
+                kept = _find(scene, placements, instances, sources, glowing, ask, ask_each)
+            elif kept.by_instance is not None:
+                kept.by_instance.follow(instances, placements, ask_each)
+            self._known[key] = kept
+            if not len(kept.emitters.nodes):
+                continue
+            which[numbers] = len(found)
+            found.append(kept.emitters)
+            if kept.by_instance is not None:
+                strengths[numbers] = kept.even_fraction + (1.0 - kept.even_fraction) * kept.by_instance.weights
+        which[~(strengths > 0.0)] = -1
+        return FoundEmitters(found, which, strengths, _instance_traits(geometry, instanced, links))
 
 
-def _find(scene: Scene, placement: int, instance: Instance, glowing: EmissiveMaterials, ask: Ask) -> MeshEmitters:
-    """Ask the materials of an instance for the emission of its mesh."""
+def _instance_traits(geometry: Geometry, instanced: InstancedMeshes, links: LightLinkTable) -> np.ndarray:
+    """(n,) FoundEmitters.traits."""
+    rows = geometry.placed_meshes.chosen[instanced.placements]
+    hidden = geometry.columns.visibility[rows] & int(RayVisibility.VOLUME_SCATTER) == 0
+    result = np.zeros(len(rows), np.int64)
+    for number in instanced.emitters[geometry.columns.are_linked[rows[instanced.emitters]]].tolist():
+        linking = geometry.placements.instances[instanced.placements[number]].linking
+        if linking is not None:
+            hidden[number] |= not linking.lights_media
+            result[number] = links.of_emitter(linking) << EMITTER_LINK_SHIFT
+    return result + int(EmitterTrait.HIDDEN_FROM_MEDIA) * hidden
+
+
+def _find(
+    scene: Scene,
+    placements: np.ndarray,
+    instances: list[Instance],
+    sources: tuple,
+    glowing: EmissiveMaterials,
+    ask: Ask,
+    ask_each: AskEach,
+) -> _Known:
+    """Ask the materials of instances of a mesh for its emission."""
+    instance = instances[0]
     mesh = scene.meshes[instance.mesh]
     corners = mesh.positions[mesh.corner_vertices[mesh.triangle_corners]].astype(np.float64)
     records = EMISSIVE_TRIANGLE.zeros(len(corners))
@@ -113,8 +185,21 @@ def _find(scene: Scene, placement: int, instance: Instance, glowing: EmissiveMat
     slots, which = glowing.triangles_of(scene, instance)
     which = which[records["area"][which] > 0.0]
     kinds = slots[np.minimum(mesh.triangle_slots[which], len(slots) - 1)]
-    varying = glowing.vary(kinds)
-    placed = corners[which] @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
-    records["radiance"][which] = ask(placement, which, placed, records["area"][which], kinds, varying)
-    records["traits"][which] = glowing.traits(instance, kinds) + int(EmitterTrait.UNEVEN) * varying
-    return mesh_emitters(records, corners, 2 if mesh.shape is MeshShape.SURFACE else 1)
+    varying, differs = glowing.vary(kinds), glowing.differ(kinds)
+    alike = which[~differs]
+    placed = corners[alike] @ instance.matrix[:3, :3].T + instance.matrix[:3, 3]
+    records["radiance"][alike] = ask(
+        int(placements[0]), alike, placed, records["area"][alike], kinds[~differs], varying[~differs]
+    )
+    records["traits"][which] = glowing.mesh_traits(instance, kinds) + int(EmitterTrait.UNEVEN) * varying
+    by_instance, even_fraction = None, 1.0
+    if differs.any():
+        others = which[differs]
+        even = float(np.abs(records["radiance"]).mean(axis=1) @ records["area"])
+        by_instance = InstanceEmission.ask(
+            corners[others], others, records["area"][others].astype(np.float64), instances, placements, ask_each
+        )
+        records["radiance"][others] = by_instance.radiance
+        even_fraction = even / max(float(np.abs(records["radiance"]).mean(axis=1) @ records["area"]), 1e-300)
+    sides = 2 if mesh.shape is MeshShape.SURFACE else 1
+    return _Known(sources, mesh_emitters(records, corners, sides), by_instance, even_fraction)

@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 #include <ScatteredPhaseParameters>
 #include "common/invocation.glsl"
 readonly buffer Media;
-readonly buffer PhaseFunctions;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 uniform Parameters { ScatteredPhaseParameters parameters; };

@@ -93,11 +93,9 @@ def glowing_by(kind: str, output: str) -> Scene:
     return scene
 
 
-def test_what_glows_by_object_or_place_is_expanded():
+def test_what_glows_by_object_or_place_shares_its_triangles():
     asked = ("object_info", "random"), ("particle_info", "age"), ("attribute", "fac"), ("new_geometry", "position")
-    for kind, output in asked:
-        assert members_of(glowing_by(kind, output)) == [], kind
-    for kind, output in (("tex_coord", "uv"), ("strand_value", "value"), ("new_geometry", "backfacing")):
+    for kind, output in (*asked, ("tex_coord", "uv"), ("strand_value", "value"), ("new_geometry", "backfacing")):
         assert members_of(glowing_by(kind, output)) == [0, 1, 2], kind
 
 
@@ -113,15 +111,15 @@ def test_nodes_that_trace_rays_share_triangles():
         assert members_of(with_node(kind, output)) == [0, 1, 2], kind
 
 
-def test_what_glows_and_is_linked_is_expanded():
+def test_what_glows_and_is_linked_shares_its_triangles():
     scene = with_instance(scene_of(*GLOWING_BALLS, **TWO_LEVELS), 1, linking=LightLinking(light_set_membership=2))
-    assert members_of(scene) == [0, 2]
+    assert members_of(scene) == [0, 1, 2]
 
 
-def test_what_glows_beside_media_and_catchers_is_expanded():
-    assert members_of(scene_of(*GLOWING_BALLS, (0, PLAIN), (0, PLAIN), (1, FILLED), **TWO_LEVELS)) == [3, 4]
+def test_what_glows_beside_media_and_catchers_shares_its_triangles():
+    assert members_of(scene_of(*GLOWING_BALLS, (0, PLAIN), (0, PLAIN), (1, FILLED), **TWO_LEVELS)) == [0, 1, 2, 3, 4]
     caught = with_instance(scene_of(*GLOWING_BALLS, (1, PLAIN), **TWO_LEVELS), 3, shadow_catcher=True)
-    assert members_of(caught) == []
+    assert members_of(caught) == [0, 1, 2]
 
 
 def bending(scene: Scene, number: int = 0) -> Scene:
