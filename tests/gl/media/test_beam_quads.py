@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Quads of photon beams cover every camera ray that passes within a beam's radius."""
+"""Photon beams on the raster: quads cover every camera ray that passes within a radius, and their pairs are counted."""
 
 import fog
 import numpy as np
 import pytest
+import scenes
 from rendering import iterated
 
 from rppm_addon.integrator.common.records.photons import PHOTON, PHOTON_CONTRIBUTED
@@ -59,3 +60,16 @@ def test_all_beams_that_rays_meet_give_light(mapper, half):
     assert met.sum() > 50
     print(f"\n{half}: {met.sum()} met, {(met & ~gave_light).sum()} of them without light")
     assert not (met & ~gave_light).any()
+
+
+@pytest.mark.parametrize("density", [0.3, 6.0], ids=["beams", "points"])
+def test_pairs_are_counted(mapper, density):
+    """By the choice of the number of photons; where a medium shines, camera paths leave dense fog to points."""
+    camera = fog.camera((0.0, -4.0, 0.0), (0.0, 0.0, 0.0), 0.3, 16)
+    box = scenes.box("box", 1.0), fog.fog(density, 0.5, emission=0.1), scenes.placed(0.0, 0.0, 0.0, 1.0)
+    lights = [fog.lamp(0.0, 0.0, 2.0)]
+    scene = fog.scene_of(camera, box, lights=lights, photons=0, max_bounces=16, volume_bounces=4)
+    stages = iterated(mapper, scene, 2).stages
+    beams, points = stages.photon_beams.count_pairs(), stages.medium_photons.count_pairs()
+    print(f"\n{density}: {beams} beams, {points} points")
+    assert (beams > 256) == (density < 1.0) == (points < 256)
