@@ -180,7 +180,6 @@ void main() {
         ++pairs;
         collect_photon(collected, index, candidate.w, radiance);
     }
-    if (pairs == 0u) return;
-    write_collected(index, scattered_light_is_gathered(path), collected);
+    if (pairs > 0u) write_collected(index, scattered_light_is_gathered(path), collected);
     if (parameters.counting != 0u) atomicAdd(pairs_in_media, pairs);
 }
