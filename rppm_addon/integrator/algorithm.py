@@ -129,4 +129,5 @@ def _learn(
     if iteration.is_tallied:
         learning.tally(context, stages.photons, findings)
     if iteration.weighs_noise:
-        learning.weigh_noise(iteration, stages.photons, stages.photon_noise.vertices, findings)
+        pairs_in_media = stages.medium_photons.count_pairs(), stages.photon_beams.count_pairs()
+        learning.weigh_noise(iteration, stages.photons, stages.photon_noise.vertices, findings, pairs_in_media)

@@ -88,9 +88,17 @@ class Learning:
         photons: Photons,
         vertices: int,
         findings: list[BandFindings],
+        pairs_in_media: tuple[int, int],
     ) -> None:
-        """Choose how many photons the iterations after one that is learned from have; ``vertices``: of its camera
-        paths."""
+        """Choose how many photons the iterations after one that is learned from have.
+
+        Args:
+            iteration: that one.
+            photons: its photons.
+            vertices: of its camera paths.
+            findings: by band.
+            pairs_in_media: how many photons, and how many photon beams, pixels took from media.
+        """
         found = NoiseSamples.of(np.concatenate([require(band.noise_samples) for band in findings]))
         if self.rest is None:
             self.photon_noise = self.photon_noise.with_first(found)
@@ -100,7 +108,8 @@ class Learning:
             self.photon_noise = self.photon_noise.with_next(iteration.photon_count, found, self.rest, growth)
         self.rest = found.rest.astype(np.float32)
         pairs = sum(int(band.photons_taken.sum(dtype=np.int64)) for band in findings)
-        each = photon_cost(iteration.photon_count, photons.count_segments(), pairs)
+        points, beams = pairs_in_media
+        each = photon_cost(iteration.photon_count, photons.count_segments(), pairs + points, beams)
         paths = camera_cost(vertices, iteration.shadow_rays)
         later = self.photon_noise.best_photons(self.photon_counts.first, each, paths)
         self.photon_counts = self.photon_counts.followed_by(later)

@@ -37,7 +37,7 @@ Record(
     **_GRID_PARAMETERS,
     **SUM_PARAMETERS,
 )
-StorageBlock("Buckets", "uint cursor; uint wide_in_use[2]; uint unused; uvec2 buckets[];")
+StorageBlock("Buckets", "uint cursor; uint wide_in_use[2]; uint pairs_in_media; uvec2 buckets[];")
 StorageBlock("SortedPhotons", "uvec4 sorted_photons[];")
 StorageBlock("Visits", "uint visit_groups[3]; uint visit_count; uvec2 visits[];")
 

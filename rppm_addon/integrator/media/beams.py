@@ -55,7 +55,7 @@ BEAM_TARGET = Record(
 )
 """A camera ray through thin media up to the distance ``far``, meters. ``mark`` is the number of the segment, from 1 on,
 in which it was written."""
-StorageBlock("BeamTargets", "uint beam_target_count; BeamTarget beam_targets[];")
+StorageBlock("BeamTargets", "uint beam_target_count; uint beam_pair_count; BeamTarget beam_targets[];")
 Record(
     "BeamTargetParameters",
     segment="uint",
@@ -126,11 +126,16 @@ class PhotonBeams(Stage):
         self._size = volume ** (1.0 / 3.0)
         self.beams.require_items(1)
         self.beams.write(np.zeros(4, np.uint32))
+        self._targets.write(np.zeros(4, np.uint32))
 
     @property
     def least_free_path(self) -> float:
         """Mean free path, meters, of the densest media in which beams stand for photons."""
         return self._size / _DEPTH
+
+    def count_pairs(self) -> int:
+        """Return the pairs of a beam and a ray of the iteration, where photons are counted. Waits for the device."""
+        return int(self._targets.read(np.uint32, 2)[1]) if self.is_on else 0
 
     def probability(self, photon_count: int) -> float:
         """Return the probability with which the way of a photon becomes a beam."""
@@ -164,7 +169,7 @@ class PhotonBeams(Stage):
             return
         with context.timers.stage("photon beams"):
             self._mark += 1
-            self._targets.write(np.zeros(4, np.uint32))
+            self._targets.write(np.zeros(1, np.uint32))
             importons.active.run(
                 self._find_targets,
                 {**context.blocks, **importons.blocks, **self.blocks},

@@ -152,6 +152,11 @@ class MediumPhotonMap(Stage):
                     },
                 )
 
+    def count_pairs(self) -> int:
+        """Return the pairs of a photon and a point of a ray of the iteration, where photons are counted. Waits for the
+        device."""
+        return int(self._grid.read(np.uint32, 4)[3]) if self.photon_count else 0
+
     def _first_radius(self, volume: float, reach: float) -> float:
         """Return the radius of the first iteration with as many photons, meters."""
         ball = _EXPECTED_PHOTONS * volume / self.photon_count

@@ -16,5 +16,6 @@ void add_beam(uint pixel, PhotonBeam beam, vec3 radiance) {
     if ((parameters.light_sums & LIGHT_SUMS_CAUSTICS) != 0u && (beam.flags & PHOTON_CAUSTIC) != 0u)
         add_to_light_sum(pixel, CAUSTICS_SUM, radiance);
     if (parameters.counting == 0u) return;
+    atomicAdd(beam_pair_count, 1u);
     add_signed_quanta(signed_place(pixel, false), photon_sign(beam.path) * luminance(radiance) * parameters.quanta);
 }

@@ -19,7 +19,7 @@ readonly buffer Media;
 #include "materials/medium.glsl"
 #include "common/phase_functions.glsl"
 readonly buffer PhotonBeams;
-readonly buffer BeamTargets;
+buffer BeamTargets;
 readonly buffer Camera;
 buffer Photons;
 #include "media/beams/add.glsl"

@@ -39,7 +39,7 @@ readonly buffer PhotonOrigins;
 readonly buffer Importons;
 #include "density_estimation/splat_sums/collect.glsl"
 #include "density_estimation/splat_sums/add_light.glsl"
-readonly buffer Buckets;
+buffer Buckets;
 readonly buffer SortedPhotons;
 
 #include "media/photon_map/kernel.glsl"
@@ -155,7 +155,7 @@ void main() {
     point.weight /= 1.0 - kernel_beyond_surfaces(ray, segment, point.at.distance, radius);
     Collected collected = Collected(uvec2(0u), uvec2(0u), uvec2(0u), 0u, 0u, uvec2(0u));
     uint passed = 0u, corner = 0u, next = ranges[0].x;
-    bool any = false;
+    uint pairs = 0u;
     // Candidates before parameters.first_candidate were taken by an earlier dispatch.
     for (uint rounds = 0u; rounds < parameters.candidates && corner < 8u; ++rounds) {
         while (corner < 8u && next >= ranges[corner].y) {
@@ -176,8 +176,9 @@ void main() {
         if (!point.takes_all && !has_come_straight(candidate.w)) continue;
         vec3 radiance = photon_radiance(point, candidate.w, distance2, radius);
         if (!(largest(radiance) > 0.0)) continue;
-        any = true;
+        ++pairs;
         collect_photon(collected, index, candidate.w, radiance);
     }
-    if (any) write_collected(index, scattered_light_is_gathered(path), collected);
+    if (pairs > 0u) write_collected(index, scattered_light_is_gathered(path), collected);
+    if (parameters.counting != 0u) atomicAdd(pairs_in_media, pairs);
 }

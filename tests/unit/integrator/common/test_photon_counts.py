@@ -118,4 +118,5 @@ def test_pixels_that_are_not_finite_tell_nothing():
 def test_costs_are_counts():
     assert photon_cost(100, 250, 0) == 2.5
     assert photon_cost(100, 250, 1000) > 2.5
+    assert photon_cost(100, 250, 0, 1000) > photon_cost(100, 250, 1000)
     assert camera_cost(100, 4) - camera_cost(100, 2) == camera_cost(100, 2) - camera_cost(100, 0) > 0.0
