@@ -15,7 +15,8 @@ from .iteration import LEARNING_ITERATIONS
 
 _CAMERA_VERTEX, _SHADOW_RAY, _PHOTON_PAIR, _BEAM_PAIR = 1.0, 0.5, 0.1, 0.3
 """Costs in units of a photon's ray with its hit: a vertex of a camera path, a shadow ray there, a photon that a pixel
-takes, and a photon beam that it meets. They are fixed numbers, not measured ones, so that renders are the same on every run."""
+takes, and a photon beam that it meets. They are fixed numbers, not measured ones, so that renders are the same on every
+run."""
 _MAX_HALVINGS, _FEWEST = 4.0, 512
 """Most halvings of the first iteration's number of photons, and the fewest photons that halvings leave: so many go on
 looking for light that no photon has found."""
@@ -153,6 +154,6 @@ def camera_cost(vertices: int, shadow_rays: int) -> float:
 
 
 def photon_cost(photons: int, segments: int, pairs: int, beam_pairs: int = 0) -> float:
-    """Cost of one of so many photons, in photon rays, from the rays of all, the pairs of photons and pixels, and those of
-    photon beams and pixels."""
+    """Cost of one of so many photons, in photon rays, from the rays of all, the pairs of photons and pixels, and those
+    of photon beams and pixels."""
     return (segments + _PHOTON_PAIR * pairs + _BEAM_PAIR * beam_pairs) / max(photons, 1)
