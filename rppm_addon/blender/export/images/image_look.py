@@ -36,9 +36,8 @@ class ImageLook:
         """Return the properties of an image."""
         space, in_file = image.colorspace_settings.name, image.source != "GENERATED" and image.packed_file is None
         associated, kind = is_associated(image), image.file_format
-        return cls(
-            image.name, space, image.alpha_mode, image.is_float, associated, in_file, kind, working_space()
-        )  # fmt: skip
+        mode, is_float = image.alpha_mode, image.is_float
+        return cls(image.name, space, mode, is_float, associated, in_file, kind, working_space())
 
     @property
     def times_alpha(self) -> int:
