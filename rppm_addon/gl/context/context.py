@@ -203,7 +203,7 @@ class Context:
 
     @functools.cached_property
     def has_multi_bind(self) -> bool:
-        """Whether the driver binds several images by one call."""
+        """True where one call of the driver binds several images (OpenGL 4.4, GL_ARB_multi_bind)."""
         gl = self.moderngl
         return gl.version_code >= _MULTI_BIND_VERSION or "GL_ARB_multi_bind" in gl.extensions
 

@@ -41,7 +41,8 @@ class Pace:
     stopwatch: "_Stopwatch | None" = None
 
     def learn(self, items: int | None, seconds: float) -> None:
-        """So many items, where that is known, took so long. What a few took is the cost of any dispatch."""
+        """So many items, where that is known, took so long. The speed of few says nothing of that of many: most of
+        their time is that of any dispatch."""
         self.max_seconds = max(seconds, _FORGETTING * self.max_seconds)
         if items and (items >= _FIRST_ITEMS or self.seconds_per_item is None):
             self.seconds_per_item = seconds / items

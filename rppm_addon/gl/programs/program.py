@@ -133,7 +133,8 @@ class ComputeProgram(Program):
         super().__init__(context, maker.pacing, [source])
         self._set_uniform = maker.set_uniform
         self._is_divisible = FIRST_INVOCATION in source.text
-        self._is_new = DRIVER_THREADS in source.text
+        self._lacks_threads = DRIVER_THREADS in source.text
+        """Whether the uniform DRIVER_THREADS is still to be set, which only a linked program can be given."""
         self.local_size = source.local_size
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)
@@ -173,9 +174,9 @@ class ComputeProgram(Program):
 
     def _run(self, groups: Callable[[], int], whole: Callable[[], None]) -> None:
         """Run the program with what is bound, in pieces where it takes long, and order the writes."""
-        if self._is_new:
+        if self._lacks_threads:
             self._set_uniform(self._program.glo, 1, self.context.driver_threads)
-            self._is_new = False
+            self._lacks_threads = False
         if self._is_divisible:
             self._pacing.run(self._pace, groups, whole, self._run_groups)
         else:

@@ -48,12 +48,14 @@ def _spot_cone(axes: np.ndarray, cosine: float) -> tuple[np.ndarray, np.ndarray,
     """
     lengths = np.maximum(np.linalg.norm(axes, axis=0), 1e-9)
     units = axes / lengths
+    # Without shear, and where there is no inverse, both follow in closed form.
     if np.abs(units.T @ units - np.eye(3)).max() < 1e-5 or abs(np.linalg.det(units)) < 1e-6:
         widest = math.atan(math.tan(min(math.acos(cosine), 1.57)) * max(1.0, max(lengths[:2]) / lengths[2]))
         holding = math.cos(widest) if cosine > 1e-3 else 0.0
         u, v = (units[:, axis] * (lengths[2] / lengths[axis]) for axis in (0, 1))
         return u, v, -_unit(axes[:, 2]), holding
-    u, v, beam = np.linalg.inv(axes) / np.linalg.norm(np.linalg.inv(axes)[2])
+    inverse = np.linalg.inv(axes)
+    u, v, beam = inverse / np.linalg.norm(inverse[2])
     turn, sine = np.linspace(0.0, 2.0 * math.pi, 257), math.sqrt(1.0 - cosine * cosine)
     rim = axes @ np.stack([sine * np.cos(turn), sine * np.sin(turn), np.full_like(turn, -cosine)])
     holding = float((-beam @ rim / np.linalg.norm(rim, axis=0)).min())

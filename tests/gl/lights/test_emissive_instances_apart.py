@@ -143,7 +143,7 @@ def test_light_in_media(mapper, mode):
 
 
 def test_light_on_shadow_catchers(mapper):
-    """How much of the light a sheet above the floor stops."""
+    """A sheet above a catching floor stops the same fraction of the light of instances, expanded or in two levels."""
 
     def alpha(instancing: Instancing) -> np.ndarray:
         made = []

@@ -115,8 +115,9 @@ class EmitterInstances(BufferSet):
             placed, scales, records["stretch"][of_mesh] = placed_roots(mesh, instanced.matrices[of_mesh])
             placed["member"] = INSTANCE_MEMBER | of_mesh
             scales *= found.strengths[of_mesh]
-            placed["intensity"] = mesh.nodes["intensity"][1] * scales
-            self.leaves[is_of_mesh], self.weights[is_of_mesh] = placed, mesh.nodes["intensity"][1] * scales
+            weights = mesh.nodes["intensity"][1] * scales
+            placed["intensity"] = weights
+            self.leaves[is_of_mesh], self.weights[is_of_mesh] = placed, weights
             self.power = self.power + mesh.power * scales.sum()
 
     def choose(self, leaves: np.ndarray, probabilities: np.ndarray, cumulated: float, first_emitter: int) -> None:

@@ -121,27 +121,26 @@ class EmissiveMeshes:
         instanced = geometry.instanced
         if instanced is None or not instanced.has_emitters:
             return FoundEmitters([], np.zeros(0, np.int64), np.zeros(0), np.zeros(0, np.int64))
-        glowing = EmissiveMaterials(scene, materials)
+        glowing, placed = EmissiveMaterials(scene, materials), geometry.placements.instances
         rows: dict[tuple, list[int]] = {}
         for number, placement in zip(
             instanced.emitters.tolist(), instanced.placements[instanced.emitters].tolist(), strict=True
         ):
-            instance = geometry.placements.instances[placement]
+            instance = placed[placement]
             rows.setdefault((instance.mesh, *instance.materials, is_seen_reflected(instance)), []).append(number)
         found: list[MeshEmitters] = []
         which = np.full(len(instanced.placements), -1, np.int64)
         strengths = np.ones(len(which))
         for numbers in rows.values():
             placements = instanced.placements[numbers]
-            instances = [geometry.placements.instances[placement] for placement in placements.tolist()]
-            one = instances[0]
+            one = placed[placements[0]]
             sources = scene.meshes[one.mesh], *glowing.of_slots(one)
             key = *map(id, sources), is_seen_reflected(one)
             kept = known.get(key)
             if kept is None:
-                kept = _find(scene, placements, instances, sources, glowing, ask, ask_each)
+                kept = _find(scene, placements, _at(placements, placed), sources, glowing, ask, ask_each)
             elif kept.by_instance is not None:
-                kept.by_instance.follow(instances, placements, ask_each)
+                kept.by_instance.follow(_at(placements, placed), placements, ask_each)
             self._known[key] = kept
             if not len(kept.emitters.nodes):
                 continue
@@ -151,6 +150,11 @@ class EmissiveMeshes:
                 strengths[numbers] = kept.even_fraction + (1.0 - kept.even_fraction) * kept.by_instance.weights
         which[~(strengths > 0.0)] = -1
         return FoundEmitters(found, which, strengths, _instance_traits(geometry, instanced, links))
+
+
+def _at(placements: np.ndarray, placed: list[Instance]) -> list[Instance]:
+    """Return the instances of placements (n,)."""
+    return [placed[placement] for placement in placements.tolist()]
 
 
 def _instance_traits(geometry: Geometry, instanced: InstancedMeshes, links: LightLinkTable) -> np.ndarray:
