@@ -180,9 +180,14 @@ def _compile(driver: Driver, programs: Sequence[Program]) -> Outcome:
         (folder / "programs.json").write_text(json.dumps([program.texts for program in programs]), encoding="utf-8")
         shutil.copy(HERE / "compile.py", folder)
         command, environment = _newest_command(driver, folder) if driver.is_newest else _command(driver, folder)
-        run = subprocess.run(
-            command, env=environment, stderr=subprocess.PIPE, text=True, errors="replace", timeout=LONGEST_SECONDS
-        )
+        try:
+            run = subprocess.run(
+                command, env=environment, stderr=subprocess.PIPE, text=True, errors="replace", timeout=LONGEST_SECONDS
+            )
+        except subprocess.TimeoutExpired as error:
+            raise LabError(
+                f"{driver.name} did not compile {len(programs)} programs in {LONGEST_SECONDS} s; give it more time"
+            ) from error
         answer = folder / "results.json"
         if run.returncode or not answer.exists():
             raise LabError(f"{driver.name} ended with code {run.returncode}: {run.stderr[-1000:]}")

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Driver lab: its reading of what drivers print. Nothing is compiled."""
 
+import sys
+
 import pytest
 
 from benchmarks.drivers import lab, statistics
@@ -49,6 +51,17 @@ def test_each_program_has_what_was_said_of_it():
     outcome = lab.outcome_of(driver, programs, found, printed)
     errors = [outcome.rows[program.digest].error for program in programs]
     assert errors == ["", "ERROR: unknown nir_op unpack", "the driver has made no code of it", "0:1: wrong"]
+
+
+def test_a_driver_that_takes_too_long_is_named(monkeypatch, tmp_path):
+    monkeypatch.setattr(lab, "LONGEST_SECONDS", 0.1)
+    monkeypatch.setattr(lab, "lab_folder", lambda: tmp_path)
+    monkeypatch.setattr(
+        lab, "_command", lambda driver, folder: ([sys.executable, "-c", "import time; time.sleep(60)"], {})
+    )
+    driver = Driver("slow card", "shim", {}, "", statistics.nouveau, 64)
+    with pytest.raises(lab.LabError, match="slow card did not compile 1 programs in 0.1 s"):
+        lab.compile_all(driver, [Program("any", {"comp": Source("any", ["any"])})])
 
 
 def test_heavy_programs_may_not_get_worse(tmp_path):
