@@ -204,8 +204,8 @@ class Geometry(BufferSet):
         self, scene: Scene, instanced: Callable[[InstanceColumns], np.ndarray | None], passes_surfaces: bool = True
     ) -> bool:
         """Return True where a build of a scene with the instances of the last one, whose materials, settings or size
-        may be others, would expand the same ones, the same of the others might emit light, and all paths have places for
-        what they hit. ``instanced``, ``passes_surfaces``: as build takes them."""
+        may be others, would expand the same ones, the same of the others might emit light, and all paths have places
+        for what they hit. ``instanced``, ``passes_surfaces``: as build takes them."""
         placements = self._placed_by_rays(instanced)
         if self.instanced is None:
             return not len(placements)
