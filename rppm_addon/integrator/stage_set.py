@@ -85,6 +85,7 @@ class StageSet(BufferSet):
             self.camera_hits: CameraHits = self.own(
                 _camera_hits(self._sizes, context.is_software)(context, library, self._sizes)
             )
+        self.direct_light.lent_closures = self.photons.closures  # those of photons rest while camera paths are traced
         self.coverage = Coverage(library)
         listeners = (
             *(self.photon_noise, self.film, self.noise_estimate),

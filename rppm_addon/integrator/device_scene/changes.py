@@ -30,7 +30,8 @@ class Changes:
     cubemap: bool
     """Where the deep cubemap is asked to be, and how fine."""
     levels: bool
-    """Settings, and what is baked, by which instances are expanded (instancing.py)."""
+    """Settings, and what is baked, by which instances are expanded (instancing.py), and the numbers of paths, each of
+    which needs places for what it hits on the others."""
 
 
 def changes_between(before: Scene | None, after: Scene) -> Changes:
@@ -82,6 +83,9 @@ def _levels(scene: Scene) -> tuple[object, ...]:
         settings.instancing,
         settings.first_camera_hits,
         None if texels is None else texels.instance,
+        scene.camera.resolution,
+        scene.photon_count,
+        scene.shutter is not None and scene.shutter.is_rolling,
     )
 
 

@@ -181,7 +181,7 @@ class DeviceScene:
             changes.geometry |= self.materials.place_media(scene)
         instanced = functools.partial(self.acceleration.instanced_members, self._motion.scene)
         if not changes.geometry and (changes.materials or changes.levels):
-            changes.geometry = not self.geometry.would_place(scene, instanced)
+            changes.geometry = not self.geometry.would_place(scene, instanced, self.materials.any_passes_shadow_rays)
         if changes.geometry:
             self.geometry.build(
                 scene,
@@ -189,6 +189,7 @@ class DeviceScene:
                 self._motion.swept,
                 self.materials.media.places.slots,
                 instanced,
+                self.materials.any_passes_shadow_rays,
             )
         if changes.geometry or changes.materials:
             with self._collect_warnings("resolve"):

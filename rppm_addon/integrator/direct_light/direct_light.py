@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import moderngl
 
 from ...gl.buffer_sets import StorageBuffer
+from ...gl.buffers.buffers import GrowingBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
@@ -73,11 +74,14 @@ class DirectLight(Stage):
     active_rays = PathList("active shadow rays", band_pixels)
     # Of scenes with transparent surfaces.
     _hits = StorageBuffer("hits of shadow rays", HIT)
-    _closures = StorageBuffer("closures that shadow rays pass", CLOSURE)
+    _own_closures = StorageBuffer("closures that shadow rays pass", CLOSURE)
     _passing = PathList("shadow rays that pass surfaces", to_keep=True)
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
+        self.lent_closures: GrowingBuffer | None = None
+        """Closures that another stage does not need meanwhile."""
+        self._block_limit = context.storage_block_limit
         self._sample = EmitterProgram(library, "direct_light/sample.comp")
         if sizes.features.has_media:
             self._sample_in_media = EmitterProgram(library, "media/in_scattering/sample_lights.comp")
@@ -160,6 +164,7 @@ class DirectLight(Stage):
             self._rays.buffer,
             self.triangles.buffer,
             self.contributions.buffer,
+            self._require_closures(),
             active,
             iteration.number,
         )
@@ -200,9 +205,8 @@ class DirectLight(Stage):
         segment: int,
     ) -> None:
         """Trace shadow rays through transparent surfaces, which take of what they bring."""
-        rays, hits, closures, passing = self._rays, self._hits, self._closures, self._passing
-        for buffer in (hits, closures):
-            buffer.require_items(self.active_rays.capacity)
+        rays, hits, closures, passing = self._rays, self._hits, self._require_closures(), self._passing
+        hits.require_items(self.active_rays.capacity)
         passing.require(self.active_rays.capacity, to_keep=True)
         passing.take(self.active_rays, rays.buffer)
         most = context.settings.transparent_max_bounces + (_MOST_VOLUME_SURFACES if self._media.size else 0)
@@ -215,7 +219,7 @@ class DirectLight(Stage):
                 **importons.blocks,
                 **self.blocks,
                 "Hits": hits.buffer,
-                "Closures": closures.buffer,
+                "Closures": closures,
             }
             passing.run(self._meet, blocks)
             passing.keep(rays.buffer)
@@ -224,7 +228,7 @@ class DirectLight(Stage):
             context.resolve.shadow_rays(
                 rays.buffer,
                 hits.buffer,
-                closures.buffer,
+                closures,
                 self.contributions.buffer,
                 passing,
                 iteration.number,
@@ -234,6 +238,14 @@ class DirectLight(Stage):
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
+
+    def _require_closures(self) -> moderngl.Buffer:
+        """Room for the closure of a surface for each shadow ray: what was lent, if that is enough and a plain block."""
+        lent, count = self.lent_closures, self.active_rays.capacity
+        if lent is not None and lent.capacity >= count and lent.size <= self._block_limit:
+            return lent.buffer
+        self._own_closures.require_items(count)
+        return self._own_closures.buffer
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""

@@ -86,7 +86,7 @@ class Photons(Stage):
     _paths = StorageBuffer("photon paths", PHOTON_PATH, photon_paths, block="PhotonPaths")
     _rays = StorageBuffer("photon rays", RAY, photon_paths, block="Rays")
     _hits = StorageBuffer("photon hits", HIT, photon_paths, block="Hits")
-    _closures = StorageBuffer("photon closures", CLOSURE, photon_paths, texel_bytes=4, block="Closures")
+    closures = StorageBuffer("photon closures", CLOSURE, photon_paths, texel_bytes=4, block="Closures")
     _adjoint_queries = StorageBuffer("adjoint queries", ADJOINT_QUERY, photon_paths, block="AdjointQueries")
     _differentials = StorageBuffer(
         "photon differentials", PHOTON_DIFFERENTIAL, photon_paths, block="PhotonDifferentials"
@@ -127,7 +127,7 @@ class Photons(Stage):
             self._groups.find(context, rays, self.photon_origins.buffer, self.photon_count)
             self._links.find(context, rays, self.photon_count)
             context.lights.emitters.tint_photons(
-                context.resolve, rays, hits, self._closures.buffer, paths, self._active, iteration.number
+                context.resolve, rays, hits, self.closures.buffer, paths, self._active, iteration.number
             )
         with context.timers.stage("first photon hits"):
             self.first_hits.find(context, rays, hits, self._active)
@@ -156,14 +156,14 @@ class Photons(Stage):
             context.resolve.run(
                 self._rays.buffer,
                 self._hits.buffer,
-                self._closures.buffer,
+                self.closures.buffer,
                 self._active,
                 iteration.number,
                 segment,
                 photon_paths=self._paths.buffer,
                 has_adjoint_queries=has_adjoint_queries,
             )
-            self._links.link(context, self._closures.buffer, self._paths.buffer, self._active)
+            self._links.link(context, self.closures.buffer, self._paths.buffer, self._active)
 
     def scatter(self, context: StageContext, subsurface: Subsurface, iteration: Iteration, segment: int) -> None:
         """Store photons, and send them on with the flux that a viewer would see from where they go."""

@@ -26,7 +26,7 @@ from ..common.records.triangles import TRIANGLE_ATTRIBUTES, TRIANGLE_VERTICES
 from ..common.require import require
 from ..common.stage_sizes import StageSizes
 from .gather_inputs import INSTANCE_ENTRY, GatherInputs, locate, place_slots
-from .hit_triangles import HitTriangles
+from .hit_triangles import HitTriangles, traced_lists
 from .object_triangles import ObjectTriangles
 from .placements import PlacedArrays, PlacedMeshes, Placement, Placements
 from .volume_insets import inset_matrix, volumes_alone
@@ -157,11 +157,12 @@ class Geometry(BufferSet):
         swept: tuple[np.ndarray, np.ndarray] | None = None,
         slots: list[Sequence[int]] | None = None,
         instanced: Callable[[InstanceColumns], np.ndarray | None] | None = None,
+        passes_surfaces: bool = True,
     ) -> None:
         """Upload the meshes and gather all instances. ``default_material`` serves empty slots. ``swept``: what the
         bounds enclose in any case, each (3,), low and high. ``slots``: the materials of the slots of each instance, in
         place of its own. ``instanced``: gives by the columns of all instances those, (instances,) bool, that are not
-        expanded to world triangles, or None for none.
+        expanded to world triangles, or None for none. ``passes_surfaces``: whether shadow rays may pass surfaces.
 
         Arrays that are the very objects of the last build are not uploaded again: moving instances uploads the
         instances only, bending a mesh its positions and normals. Instances that are the very objects of the last build
@@ -190,7 +191,8 @@ class Geometry(BufferSet):
         before, self._world = self._world, None  # should gathering fail
         world = TriangleSources(placed_meshes, expanded, placed_by, slots_uploaded)
         first_materials = slots_uploaded[entries["first_slot"]]
-        self._place_instanced(scene, meshes, which, np.flatnonzero(~is_expanded), entries, first_materials, world)
+        by_rays = np.flatnonzero(~is_expanded)
+        self._place_instanced(scene, meshes, which, by_rays, entries, first_materials, world, passes_surfaces)
         # After a build that failed, a buffer may be another one without what it held.
         is_new = self._require_triangles(of.instances, lengths) or before is None
         if is_new or world != before:
@@ -198,16 +200,21 @@ class Geometry(BufferSet):
         self._objects.gather(self._inputs.blocks, self.triangles, is_new)
         self._world = world
 
-    def would_place(self, scene: Scene, instanced: Callable[[InstanceColumns], np.ndarray | None]) -> bool:
-        """Return True where a build of a scene with the instances of the last one, whose materials or settings may be
-        others, would expand the same ones, and the same of the others might emit light. ``instanced``: as build takes
-        it."""
+    def would_place(
+        self, scene: Scene, instanced: Callable[[InstanceColumns], np.ndarray | None], passes_surfaces: bool = True
+    ) -> bool:
+        """Return True where a build of a scene with the instances of the last one, whose materials, settings or size
+        may be others, would expand the same ones, the same of the others might emit light, and all paths have places
+        for what they hit. ``instanced``, ``passes_surfaces``: as build takes them."""
         placements = self._placed_by_rays(instanced)
         if self.instanced is None:
             return not len(placements)
         emitters = self._emitters_among(placements, scene)
-        return np.array_equal(placements, self.instanced.placements) and np.array_equal(
-            emitters, self.instanced.emitters
+        sizes = StageSizes.of(scene)
+        return (
+            np.array_equal(placements, self.instanced.placements)
+            and np.array_equal(emitters, self.instanced.emitters)
+            and self._hits.has_room(sizes, traced_lists(sizes, passes_surfaces, len(emitters) > 0))
         )
 
     def _placed_by_rays(self, instanced: Callable[[InstanceColumns], np.ndarray | None]) -> np.ndarray:
@@ -296,14 +303,17 @@ class Geometry(BufferSet):
         entries: np.ndarray,
         first_materials: np.ndarray,
         world: TriangleSources,
+        passes_surfaces: bool,
     ) -> None:
         """Have places behind the world triangles for what instances need that are not expanded. ``which``: the mesh of
         each placement, ``placements``: the numbers of those instances; ``first_materials``: (n,) the material of each
-        placement's first slot."""
+        placement's first slot; ``passes_surfaces``: as build takes it."""
         self.instanced = None
         first = next_range(self.triangle_count)
         emitters = self._emitters_among(placements, scene)
-        self._hits.place(first, StageSizes.of(scene) if len(placements) else None, len(emitters) > 0)
+        sizes = StageSizes.of(scene) if len(placements) else None
+        lists = set() if sizes is None else traced_lists(sizes, passes_surfaces, len(emitters) > 0)
+        self._hits.place(first, sizes, lists)
         mesh_of = which[placements]
         used = np.flatnonzero(np.bincount(mesh_of))
         one = np.zeros(len(meshes), np.int64)

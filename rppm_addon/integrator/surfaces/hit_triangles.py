@@ -2,6 +2,7 @@
 """World-space triangles of what rays hit on instances that are not expanded."""
 
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 
 import moderngl
 import numpy as np
@@ -28,10 +29,30 @@ _PATHS = {
 """Number of paths of each list, by the sizes of a scene."""
 
 
+def traced_lists(sizes: StageSizes, passes_surfaces: bool, has_emitters: bool = False) -> set[HitPaths]:
+    """Lists of paths whose hits are read in scenes of these sizes. passes_surfaces: whether shadow rays pass surfaces;
+    has_emitters: whether instances that are not expanded emit light."""
+    lists = {HitPaths.CAMERA, HitPaths.PHOTON}
+    also = {
+        HitPaths.SHADOW: passes_surfaces,
+        HitPaths.SUBSURFACE: sizes.has_subsurface,
+        HitPaths.LIGHT: has_emitters,
+    }
+    return lists | {paths for paths, is_traced in also.items() if is_traced}
+
+
+def _counts(sizes: StageSizes, lists: AbstractSet[HitPaths]) -> dict[HitPaths, int]:
+    """Number of places for each list of paths, of which only some are traced in scenes of these sizes."""
+    return {
+        paths: next_range((1 if paths is HitPaths.LIGHT else 2) * size(sizes)) if paths in lists else 0
+        for paths, size in _PATHS.items()
+    }
+
+
 def expected_hit_bytes(sizes: StageSizes) -> dict[str, int]:
     """Bytes by buffer that the hits of a scene of these sizes take on instances that are not expanded, where none of
-    these emits light."""
-    count = sum(next_range(2 * size(sizes)) for paths, size in _PATHS.items() if paths is not HitPaths.LIGHT)
+    these emits light, and none lets shadow rays pass."""
+    count = sum(_counts(sizes, traced_lists(sizes, passes_surfaces=False)).values())
     of_each = {
         "hit origins": 8,
         "world triangles": TRIANGLE_VERTICES.size,
@@ -54,25 +75,27 @@ class HitTriangles(BufferSet):
         super().__init__(context, library)
         self._library = library
         self._gather_listed = library.compute("surfaces/geometry/gather_listed.comp")
-        self._has_emitters = False
         self.first = self.count = 0
         """First hit triangle, and their number."""
         self.first_hits: dict[HitPaths, int] = {}
         """The first hit triangle of each list of paths, counted from ``first``."""
         self._counts: dict[HitPaths, int] = {}
 
-    def place(self, first: int, sizes: StageSizes | None, has_emitters: bool) -> None:
+    def place(self, first: int, sizes: StageSizes | None, lists: AbstractSet[HitPaths]) -> None:
         """Have places for the paths of a scene of these sizes from a triangle on; for none without sizes.
-        has_emitters: whether any instances emit light."""
-        self.first, self.count, self.first_hits, self._has_emitters = first, 0, {}, has_emitters
+        lists: those that are traced."""
+        self.first, self.count, self.first_hits = first, 0, {}
+        self._counts = {} if sizes is None else _counts(sizes, lists)
         if sizes is None:
             return
-        for paths, size in _PATHS.items():
-            of_path = 2 if paths is not HitPaths.LIGHT else int(has_emitters)
+        for paths, count in self._counts.items():
             self.first_hits[paths] = self.count
-            self._counts[paths] = next_range(of_path * size(sizes))
-            self.count += self._counts[paths]
+            self.count += count
         self.origins.require_items(self.count)
+
+    def has_room(self, sizes: StageSizes, lists: AbstractSet[HitPaths]) -> bool:
+        """Return True where there are places for the paths of a scene of these sizes. lists: as place takes them."""
+        return all(self._counts[paths] >= count for paths, count in _counts(sizes, lists).items())
 
     @property
     def listed_count(self) -> int:
@@ -121,7 +144,7 @@ class HitTriangles(BufferSet):
         ((triangles,), (attributes,)) = (buffer.ranges(count, self.first + first) for buffer in outputs)
         buffers = {**blocks, **self.blocks, kind.block: numbers, "Triangles": triangles, "Attributes": attributes}
         defines: dict[str, object] = {"HIT_NUMBERS": kind.shader} if kind is not HitNumbers.HITS else {}
-        if self._has_emitters:
+        if self._counts[HitPaths.LIGHT]:
             defines["INSTANCED_EMITTERS"] = 1
         program = self._library.compute("surfaces/geometry/gather_hits.comp", defines)
         active.run(program, buffers, {"fallback_point": fallback_point, "first_hit": first, "hit_count": count})

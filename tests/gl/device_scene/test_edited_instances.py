@@ -147,6 +147,35 @@ def test_edits_of_materials_and_settings_decide_anew_what_is_expanded(mapper, ot
         assert (instanced is not None and instanced.has_emitters) == has_emitters
 
 
+def with_material(number: int, *lobes: Lobe) -> Callable[[Scene], Scene]:
+    changed = material("changed", *lobes)
+    return lambda scene: dataclasses.replace(
+        scene, materials=[*scene.materials[:number], changed, *scene.materials[number + 1 :]]
+    )
+
+
+def resized(scene: Scene) -> Scene:
+    return dataclasses.replace(scene, camera=dataclasses.replace(scene.camera, width=40, height=40))
+
+
+def test_all_paths_have_places_for_what_they_hit(mapper, other_mapper):
+    """Paths of more pixels, of more photons, and those that new materials let go on, though no instance has changed."""
+    scene = leafy(200)
+    assert_like_a_fresh_one(mapper, other_mapper, scene, "as it was")
+    pane = Lobe(LobeKind.TRANSPARENT, 0.5), Lobe(LobeKind.DIFFUSE, 0.5, (0.0, 0.8, 0.8))
+    edits = {
+        "more pixels": resized,
+        "more photons": with_settings(photons=4000),
+        "shadow rays pass leaves": with_material(0, *pane),
+        "light goes below leaves": with_material(
+            0, Lobe(LobeKind.PRINCIPLED, subsurface_weight=1.0, subsurface_scale=0.1)
+        ),
+    }
+    for name, edit in edits.items():
+        scene = edit(scene)
+        assert_like_a_fresh_one(mapper, other_mapper, scene, name)
+
+
 def test_far_scenes_are_edited_as_near_ones(mapper, other_mapper):
     """Where places are counted from elsewhere than the world's origin."""
 

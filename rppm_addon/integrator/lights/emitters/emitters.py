@@ -250,17 +250,19 @@ class Emitters(BufferSet):
         shadow_rays: moderngl.Buffer,
         light_triangles: moderngl.Buffer,
         contributions: moderngl.Buffer,
+        closures: moderngl.Buffer,
         active: ActivePaths,
         iteration: int,
     ) -> None:
-        """Give shadow rays to emitters with varying emission the radiance of the place that they sampled."""
+        """Give shadow rays to emitters with varying emission the radiance of the place that they sampled. ``closures``
+        are overwritten."""
         if not self._varying:
             return
-        for buffer in (self._rays, self._hits, self._closures):
+        for buffer in (self._rays, self._hits):
             buffer.require_items(active.capacity)
         self._locate(shadow_rays, light_triangles, self._hits.buffer, active, photons=False)
-        resolve.run(self._rays.buffer, self._hits.buffer, self._closures.buffer, self._asked, iteration, 0)
-        self._asked.run(self._tint_contributions, {"Closures": self._closures.buffer, "Contributions": contributions})
+        resolve.run(self._rays.buffer, self._hits.buffer, closures, self._asked, iteration, 0)
+        self._asked.run(self._tint_contributions, {"Closures": closures, "Contributions": contributions})
 
     def _locate(
         self,

@@ -142,6 +142,7 @@ class EmitterInstances(BufferSet):
         self._instances.require_items(len(self._records))
         self._instances.write(levels)
         self._instances.write(self._records, EMITTER_LEVELS.size)
+        self._records = EMITTER_INSTANCE.zeros(0)  # the device has them
 
 
 def placed_roots(mesh: MeshEmitters, matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -169,7 +169,8 @@ def test_rasterized_first_hits_need_world_triangles():
 @pytest.mark.parametrize("structure", AccelerationStructure)
 def test_a_gpu_has_two_levels_where_they_are_asked_for(monkeypatch, structure):
     monkeypatch.setattr(instancing, "MANY_TRIANGLES", 1)
-    assert members_of(scene_of(*BALLS * 10, acceleration_structure=structure), is_software=False) == []
+    many = scene_of(*BALLS * 10, acceleration_structure=structure)
+    assert members_of(many, is_software=False) == members_of(many, moved=(0, 1), is_software=False) == []
     asked = scene_of(*BALLS, acceleration_structure=structure, **TWO_LEVELS)
     assert members_of(asked, is_software=False) == [0, 1, 2]
     assert StageSizes.of(asked).first_camera_hits is FirstCameraHits.TRACED
