@@ -29,7 +29,7 @@ from .media.volume_attributes import VolumeAttributes
 from .media.voxel_evaluation import VoxelEvaluator
 from .records import IMAGE_ENTRY, MATERIAL
 from .traits.emitted import Emits
-from .traits.transparency import passes_shadow_rays
+from .traits.transparency import bounds_volume_alone, passes_shadow_rays
 from .traits.view_dependence import depends_on_view
 
 
@@ -237,6 +237,7 @@ def _material_records(materials: list[Material], graphs: SceneGraphs, layout: Co
         record["first_constant"] = layout.add(material.graph, compiled)
         record["opaque_shadow"] = not material.transparent_shadow
         record["passes_shadow_rays"] = material.transparent_shadow and passes_shadow_rays(material.graph)
+        record["bounds_volume"] = material.transparent_shadow and bounds_volume_alone(material.graph)
         record["pass_index"] = material.pass_index
         record["depends_on_view"] = depends_on_view(material.graph)
     return records

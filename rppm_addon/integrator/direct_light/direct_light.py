@@ -9,11 +9,12 @@ from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.program import ComputeProgram
+from ...gl.programs.program import Bindable, ComputeProgram
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight as DirectLightMode
 from ..camera_paths.importons import Importons
-from ..common.active_paths import PathList
+from ..acceleration.instances import HitPaths
+from ..common.active_paths import ActivePaths, PathList
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records.closures import CLOSURE
@@ -78,7 +79,10 @@ class DirectLight(Stage):
 
     def __init__(self, context: Context, library: ProgramLibrary, sizes: StageSizes) -> None:
         super().__init__(context, library, sizes)
+        self._library = library
         self._sample = EmitterProgram(library, "direct_light/sample.comp")
+        defines = library.scene_defines
+        self._media_defines = {name: defines[name] for name in ("MEDIA", "HETEROGENEOUS_MEDIA") if name in defines}
         if sizes.features.has_media:
             self._sample_in_media = EmitterProgram(library, "media/in_scattering/sample_lights.comp")
         self._soften = library.compute("direct_light/terminator.comp")
@@ -205,18 +209,18 @@ class DirectLight(Stage):
             buffer.require_items(self.active_rays.capacity)
         passing.require(self.active_rays.capacity, to_keep=True)
         passing.take(self.active_rays, rays.buffer)
+        blocks = {
+            **context.blocks,
+            **importons.blocks,
+            **self.blocks,
+            "Hits": hits.buffer,
+            "Closures": closures.buffer,
+        }
         most = context.settings.transparent_max_bounces + (_MOST_VOLUME_SURFACES if self._media.size else 0)
         for surfaces in range(most + 1):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return
-            context.acceleration.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
-            blocks = {
-                **context.blocks,
-                **importons.blocks,
-                **self.blocks,
-                "Hits": hits.buffer,
-                "Closures": closures.buffer,
-            }
+            self._find_hits(context, blocks, passing, linking)
             passing.run(self._meet, blocks)
             passing.keep(rays.buffer)
             if passing.known_empty:
@@ -234,6 +238,27 @@ class DirectLight(Stage):
             passing.keep(rays.buffer)
             if passing.known_empty:
                 return
+
+    def _find_hits(
+        self,
+        context: StageContext,
+        blocks: dict[str, Bindable],
+        passing: ActivePaths,
+        linking: Mapping[str, moderngl.Buffer] | None,
+    ) -> None:
+        """Find the nearest hits of shadow rays. In media they pass the surfaces that only bound volumes, as far as the
+        program has storage blocks enough."""
+        acceleration, hits = context.acceleration, self._hits.buffer
+        if "MEDIA" not in self._media_defines or (linking and acceleration.has_instances):
+            acceleration.shadow_hits(self._rays.buffer, self.triangles.buffer, hits, passing, linking)
+            return
+        kernel = "direct_light/hits_in_media_linked.comp" if linking else "direct_light/hits_in_media.comp"
+        levels = {"HITS": "media/two_levels"} if acceleration.has_instances else {}
+        program = self._library.compute(kernel, {**acceleration.lean_traversal_defines, **self._media_defines, **levels})
+        meshes, traversal = context.geometry.mesh_blocks, acceleration.traversal_buffers
+        buffers = {**blocks, **meshes, **traversal, **(linking or {})}
+        passing.run(program, buffers, {"first_hit": acceleration.first_hit(HitPaths.SHADOW)})
+        acceleration.gather_hits(hits, passing, HitPaths.SHADOW)
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
