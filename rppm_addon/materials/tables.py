@@ -88,6 +88,8 @@ class MaterialTables(BufferSet):
         """Whether what a material scatters depends on where it is seen from."""
         self.any_passes_shadow_rays = False
         """True where shadow rays may pass the surfaces of a material."""
+        self.any_resolves_shadow_rays = False
+        """True where they may pass such as do more than to bound a volume."""
         self.displacing: dict[int, DisplacingGraph] = {}
         """By index, those materials that move vertices."""
         self._unattached: dict[int, tuple[UnattachedGraph, int]] = {}
@@ -110,6 +112,7 @@ class MaterialTables(BufferSet):
         records = _material_records(materials, graphs, layout)
         self.any_depends_on_view = bool(records["depends_on_view"].any())
         self.any_passes_shadow_rays = bool(records["passes_shadow_rays"].any())
+        self.any_resolves_shadow_rays = bool((records["passes_shadow_rays"] > records["bounds_volume"]).any())
         self.displacing = {
             index: DisplacingGraph(
                 compiled.text,

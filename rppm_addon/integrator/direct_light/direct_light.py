@@ -188,12 +188,15 @@ class DirectLight(Stage):
         iteration: Iteration,
         segment: int,
     ) -> None:
-        if context.materials.any_passes_shadow_rays:
-            self._pass_surfaces(context, importons, linking, iteration, segment)
-        else:
+        if not context.materials.any_passes_shadow_rays:
             context.acceleration.occluded(
                 self._rays.buffer, self.triangles.buffer, self.visibility.buffer, self.active_rays, linking
             )
+        elif self._media_defines and not linking and not context.materials.any_resolves_shadow_rays:
+            blocks = {**context.blocks, **importons.blocks, **self.blocks}
+            self._run_in_media("direct_light/occluded_in_media.comp", context, blocks, self.active_rays)
+        else:
+            self._pass_surfaces(context, importons, linking, iteration, segment)
 
     def _pass_surfaces(
         self,
@@ -249,16 +252,20 @@ class DirectLight(Stage):
         """Find the nearest hits of shadow rays. In media they pass the surfaces that only bound volumes, as far as the
         program has storage blocks enough."""
         acceleration, hits = context.acceleration, self._hits.buffer
-        if "MEDIA" not in self._media_defines or (linking and acceleration.has_instances):
+        if not self._media_defines or (linking and acceleration.has_instances):
             acceleration.shadow_hits(self._rays.buffer, self.triangles.buffer, hits, passing, linking)
             return
         kernel = "direct_light/hits_in_media_linked.comp" if linking else "direct_light/hits_in_media.comp"
+        self._run_in_media(kernel, context, {**blocks, **(linking or {})}, passing)
+        acceleration.gather_hits(hits, passing, HitPaths.SHADOW)
+
+    def _run_in_media(self, kernel: str, context: StageContext, blocks: dict[str, Bindable], rays: ActivePaths) -> None:
+        """Run a program that traces shadow rays behind the surfaces that only bound volumes."""
+        acceleration = context.acceleration
         levels = {"HITS": "media/two_levels"} if acceleration.has_instances else {}
         program = self._library.compute(kernel, {**acceleration.lean_traversal_defines, **self._media_defines, **levels})
-        meshes, traversal = context.geometry.mesh_blocks, acceleration.traversal_buffers
-        buffers = {**blocks, **meshes, **traversal, **(linking or {})}
-        passing.run(program, buffers, {"first_hit": acceleration.first_hit(HitPaths.SHADOW)})
-        acceleration.gather_hits(hits, passing, HitPaths.SHADOW)
+        buffers = {**blocks, **context.geometry.mesh_blocks, **acceleration.traversal_buffers}
+        rays.run(program, buffers, {"first_hit": acceleration.first_hit(HitPaths.SHADOW)})
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""
