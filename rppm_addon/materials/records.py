@@ -46,9 +46,9 @@ W/(m^3 sr), and the place of its phase functions in PhaseFunctions. Where these 
 grid of ``voxels`` (0 without one): the channels of the three (bricks.py), a byte each from the lowest; the rows of the
 matrix from the world to the grid, in which voxel i reaches from i to i + 1; and where its table of bricks begins in
 MediumVoxels. ``material_medium`` is not of this medium: item n has that of material n, as the record Material; programs
-with many storage blocks then need no block Materials. ``bounds_volume`` likewise is that of material n. ``medium_bits`` is the number of bits that a medium's number
-takes in a path's flags, the same in every item. ``light_group`` is the number of the group of what it emits, plus one;
-0 for none."""
+with many storage blocks then need no block Materials. ``bounds_volume`` is material n's as well. ``medium_bits`` is the
+number of bits that a medium's number takes in a path's flags, the same in every item. ``light_group`` is the number of
+the group of what it emits, plus one; 0 for none."""
 StorageBlock("Media", "Medium media[];")
 
 

@@ -12,8 +12,8 @@ from ...gl.context.context import Context
 from ...gl.programs.program import Bindable, ComputeProgram
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight as DirectLightMode
-from ..camera_paths.importons import Importons
 from ..acceleration.instances import HitPaths
+from ..camera_paths.importons import Importons
 from ..common.active_paths import ActivePaths, PathList
 from ..common.band import Band
 from ..common.iteration import Iteration
@@ -82,7 +82,9 @@ class DirectLight(Stage):
         self._library = library
         self._sample = EmitterProgram(library, "direct_light/sample.comp")
         defines = library.scene_defines
-        self._media_defines = {name: defines[name] for name in ("MEDIA", "HETEROGENEOUS_MEDIA") if name in defines}
+        self._media_defines: dict[str, object] = {
+            name: defines[name] for name in ("MEDIA", "HETEROGENEOUS_MEDIA") if name in defines
+        }
         if sizes.features.has_media:
             self._sample_in_media = EmitterProgram(library, "media/in_scattering/sample_lights.comp")
         self._soften = library.compute("direct_light/terminator.comp")
@@ -263,7 +265,9 @@ class DirectLight(Stage):
         """Run a program that traces shadow rays behind the surfaces that only bound volumes."""
         acceleration = context.acceleration
         levels = {"HITS": "media/two_levels"} if acceleration.has_instances else {}
-        program = self._library.compute(kernel, {**acceleration.lean_traversal_defines, **self._media_defines, **levels})
+        program = self._library.compute(
+            kernel, {**acceleration.lean_traversal_defines, **self._media_defines, **levels}
+        )
         buffers = {**blocks, **context.geometry.mesh_blocks, **acceleration.traversal_buffers}
         rays.run(program, buffers, {"first_hit": acceleration.first_hit(HitPaths.SHADOW)})
 
