@@ -70,6 +70,15 @@ def spot_in_fog() -> None:
     spot_in_the_worlds_fog()
 
 
+def glass_ball_in_fog() -> None:
+    """A ball of glass in a box of fog, with a small area light above."""
+    _begin(0.1, 4)
+    _floor_below_a_ball()
+    ball(0.5, shader_material(GLASS, Color=1.0, Roughness=0.0, IOR=1.5), place(at=(0.0, 0.0, -0.3)), segments=64)
+    box((3.0, 3.0, 2.5), medium("Fog", scatter(0.15, (0.9, 0.9, 0.9))), place(at=(0.0, 0.0, 1.5)))
+    light("AREA", 150.0, place(at=(0.5, 0.0, 2.5)), shape="SQUARE", size=0.5)
+
+
 def milk() -> None:
     """Milk that overlaps its glass, around a core, under an area light and a sky."""
     _begin(0.3, 30)
@@ -137,7 +146,7 @@ def glow_in_smoke() -> None:
 SCENES: dict[str, Callable[[], None]] = {
     scene.__name__: scene
     for scene in (
-        dense_ball, cloud, world_haze, fog_cube, spot_in_fog, milk,
+        dense_ball, cloud, world_haze, fog_cube, spot_in_fog, glass_ball_in_fog, milk,
         glow_principled, glow_of_a_blackbody, glow_of_emission, glow_in_smoke,
     )
 }  # fmt: skip

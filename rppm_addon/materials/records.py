@@ -16,12 +16,13 @@ MATERIAL = Record(
     depends_on_view="uint",
     pass_index="uint",
     medium="uint",
-    unused="uint",
+    bounds_volume="uint",
 )
 """A material: the program that evaluates its node graph, and where its constants start in MaterialData; whether lights
 shine through where it is transparent (0) or not (1), and whether shadow rays find that light (1) or photons alone do
 (0); whether what it scatters depends on where it is seen from (1); its index for compositors; and the number of the
-medium inside, from 1 on, 0 where there is none."""
+medium inside, from 1 on, 0 where there is none; and whether its surface only bounds a volume (1), so that all light
+passes it."""
 MEDIUM = Record(
     "Medium",
     absorption="vec3",
@@ -38,16 +39,16 @@ MEDIUM = Record(
     material_medium="uint",
     medium_bits="uint",
     light_group="uint",
-    unused="uint",
+    bounds_volume="uint",
 )
 """A participating medium: its absorption and scattering coefficients, 1/m, the radiance that it emits by length,
 W/(m^3 sr), and the place of its phase functions in PhaseFunctions. Where these vary, they are scales of channels of a
 grid of ``voxels`` (0 without one): the channels of the three (bricks.py), a byte each from the lowest; the rows of the
 matrix from the world to the grid, in which voxel i reaches from i to i + 1; and where its table of bricks begins in
 MediumVoxels. ``material_medium`` is not of this medium: item n has that of material n, as the record Material; programs
-with many storage blocks then need no block Materials. ``medium_bits`` is the number of bits that a medium's number
-takes in a path's flags, the same in every item. ``light_group`` is the number of the group of what it emits, plus one;
-0 for none."""
+with many storage blocks then need no block Materials. ``bounds_volume`` is material n's as well. ``medium_bits`` is the
+number of bits that a medium's number takes in a path's flags, the same in every item. ``light_group`` is the number of
+the group of what it emits, plus one; 0 for none."""
 StorageBlock("Media", "Medium media[];")
 
 

@@ -29,7 +29,7 @@ from .media.volume_attributes import VolumeAttributes
 from .media.voxel_evaluation import VoxelEvaluator
 from .records import IMAGE_ENTRY, MATERIAL
 from .traits.emitted import Emits
-from .traits.transparency import passes_shadow_rays
+from .traits.transparency import bounds_volume_alone, passes_shadow_rays
 from .traits.view_dependence import depends_on_view
 
 
@@ -88,6 +88,8 @@ class MaterialTables(BufferSet):
         """Whether what a material scatters depends on where it is seen from."""
         self.any_passes_shadow_rays = False
         """True where shadow rays may pass the surfaces of a material."""
+        self.any_resolves_shadow_rays = False
+        """True where they may pass such as do more than to bound a volume."""
         self.displacing: dict[int, DisplacingGraph] = {}
         """By index, those materials that move vertices."""
         self._unattached: dict[int, tuple[UnattachedGraph, int]] = {}
@@ -110,6 +112,7 @@ class MaterialTables(BufferSet):
         records = _material_records(materials, graphs, layout)
         self.any_depends_on_view = bool(records["depends_on_view"].any())
         self.any_passes_shadow_rays = bool(records["passes_shadow_rays"].any())
+        self.any_resolves_shadow_rays = bool((records["passes_shadow_rays"] > records["bounds_volume"]).any())
         self.displacing = {
             index: DisplacingGraph(
                 compiled.text,
@@ -237,6 +240,7 @@ def _material_records(materials: list[Material], graphs: SceneGraphs, layout: Co
         record["first_constant"] = layout.add(material.graph, compiled)
         record["opaque_shadow"] = not material.transparent_shadow
         record["passes_shadow_rays"] = material.transparent_shadow and passes_shadow_rays(material.graph)
+        record["bounds_volume"] = material.transparent_shadow and bounds_volume_alone(material.graph)
         record["pass_index"] = material.pass_index
         record["depends_on_view"] = depends_on_view(material.graph)
     return records

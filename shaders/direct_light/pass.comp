@@ -27,19 +27,8 @@ readonly buffer CameraPaths;
 readonly buffer Media;
 buffer ShadowMedia;
 #include "common/bsdf/closure.glsl"
-#include "common/random.glsl"
 #include "common/transparency.glsl"
 #include "materials/medium.glsl"
-
-// Media that let less of a shadow ray pass than this end it by Russian roulette.
-const float LEAST_PASSING = 0.1;
-
-// What a ray counts for behind media of a transmittance: 0 where the roulette ends it.
-float roulette_weight(vec3 transmittance, vec3 position) {
-    float survival = min(largest(transmittance) / LEAST_PASSING, 1.0);
-    uvec4 random = pcg4d(uvec4(floatBitsToUint(position), iteration.seed + iteration.number));
-    return unit_float(random.x) < survival ? 1.0 / survival : 0.0;
-}
 #endif
 
 void main() {
@@ -59,8 +48,7 @@ void main() {
 #endif
     vec3 transmittance = passes ? closures[index].transparent : vec3(0.0);
 #ifdef MEDIA
-    vec3 passing = segment_transmittance(media_flags, ray.origin, ray.direction, closures[index].distance);
-    transmittance *= passing * roulette_weight(passing, closures[index].position);
+    transmittance *= segment_transmittance(media_flags, ray.origin, ray.direction, closures[index].distance);
 #endif
     contributions[index].rgb *= transmittance;
     shadow_rays[index].maximum_distance = 0.0;

@@ -10,11 +10,12 @@ from ...gl.buffers.buffers import GrowingBuffer
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
-from ...gl.programs.program import ComputeProgram
+from ...gl.programs.program import Bindable, ComputeProgram
 from ...gl.programs.programs import ProgramLibrary
 from ...scene.settings import DirectLight as DirectLightMode
+from ..acceleration.instances import HitPaths
 from ..camera_paths.importons import Importons
-from ..common.active_paths import PathList
+from ..common.active_paths import ActivePaths, PathList
 from ..common.band import Band
 from ..common.iteration import Iteration
 from ..common.records.closures import CLOSURE
@@ -82,7 +83,12 @@ class DirectLight(Stage):
         self.lent_closures: GrowingBuffer | None = None
         """Closures that another stage does not need meanwhile."""
         self._block_limit = context.storage_block_limit
+        self._library = library
         self._sample = EmitterProgram(library, "direct_light/sample.comp")
+        defines = library.scene_defines
+        self._media_defines: dict[str, object] = {
+            name: defines[name] for name in ("MEDIA", "HETEROGENEOUS_MEDIA") if name in defines
+        }
         if sizes.features.has_media:
             self._sample_in_media = EmitterProgram(library, "media/in_scattering/sample_lights.comp")
         self._soften = library.compute("direct_light/terminator.comp")
@@ -189,12 +195,15 @@ class DirectLight(Stage):
         iteration: Iteration,
         segment: int,
     ) -> None:
-        if context.materials.any_passes_shadow_rays:
-            self._pass_surfaces(context, importons, linking, iteration, segment)
-        else:
+        if not context.materials.any_passes_shadow_rays:
             context.acceleration.occluded(
                 self._rays.buffer, self.triangles.buffer, self.visibility.buffer, self.active_rays, linking
             )
+        elif self._media_defines and not linking and not context.materials.any_resolves_shadow_rays:
+            blocks = {**context.blocks, **importons.blocks, **self.blocks}
+            self._run_in_media("direct_light/occluded_in_media.comp", context, blocks, self.active_rays)
+        else:
+            self._pass_surfaces(context, importons, linking, iteration, segment)
 
     def _pass_surfaces(
         self,
@@ -209,18 +218,18 @@ class DirectLight(Stage):
         hits.require_items(self.active_rays.capacity)
         passing.require(self.active_rays.capacity, to_keep=True)
         passing.take(self.active_rays, rays.buffer)
+        blocks = {
+            **context.blocks,
+            **importons.blocks,
+            **self.blocks,
+            "Hits": hits.buffer,
+            "Closures": closures,
+        }
         most = context.settings.transparent_max_bounces + (_MOST_VOLUME_SURFACES if self._media.size else 0)
         for surfaces in range(most + 1):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return
-            context.acceleration.shadow_hits(rays.buffer, self.triangles.buffer, hits.buffer, passing, linking)
-            blocks = {
-                **context.blocks,
-                **importons.blocks,
-                **self.blocks,
-                "Hits": hits.buffer,
-                "Closures": closures,
-            }
+            self._find_hits(context, blocks, passing, linking)
             passing.run(self._meet, blocks)
             passing.keep(rays.buffer)
             if passing.known_empty:
@@ -246,6 +255,33 @@ class DirectLight(Stage):
             return lent.buffer
         self._own_closures.require_items(count)
         return self._own_closures.buffer
+
+    def _find_hits(
+        self,
+        context: StageContext,
+        blocks: dict[str, Bindable],
+        passing: ActivePaths,
+        linking: Mapping[str, moderngl.Buffer] | None,
+    ) -> None:
+        """Find the nearest hits of shadow rays. In media they pass the surfaces that only bound volumes, as far as the
+        program has storage blocks enough."""
+        acceleration, hits = context.acceleration, self._hits.buffer
+        if not self._media_defines or (linking and acceleration.has_instances):
+            acceleration.shadow_hits(self._rays.buffer, self.triangles.buffer, hits, passing, linking)
+            return
+        kernel = "direct_light/hits_in_media_linked.comp" if linking else "direct_light/hits_in_media.comp"
+        self._run_in_media(kernel, context, {**blocks, **(linking or {})}, passing)
+        acceleration.gather_hits(hits, passing, HitPaths.SHADOW)
+
+    def _run_in_media(self, kernel: str, context: StageContext, blocks: dict[str, Bindable], rays: ActivePaths) -> None:
+        """Run a program that traces shadow rays behind the surfaces that only bound volumes."""
+        acceleration = context.acceleration
+        levels = {"HITS": "media/two_levels"} if acceleration.has_instances else {}
+        program = self._library.compute(
+            kernel, {**acceleration.lean_traversal_defines, **self._media_defines, **levels}
+        )
+        buffers = {**blocks, **context.geometry.mesh_blocks, **acceleration.traversal_buffers}
+        rays.run(program, buffers, {"first_hit": acceleration.first_hit(HitPaths.SHADOW)})
 
     def _soften_terminator(self, context: StageContext, importons: Importons) -> None:
         """Move and weaken shadow rays where the flat triangles of smooth surfaces would show in their shadows."""

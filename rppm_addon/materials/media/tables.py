@@ -142,6 +142,7 @@ class MediaTables(BufferSet):
         media = MEDIUM.zeros(max(len(listed), len(self._records)))
         media[: len(listed)] = [record for record, _ in listed]
         media["material_medium"][: len(self._records)] = self._records["medium"]
+        media["bounds_volume"][: len(self._records)] = self._records["bounds_volume"]
         media["medium_bits"] = max(int(self._records["medium"].max()).bit_length(), 1)
         self._table = media
         self._media.upload(media)

@@ -15,6 +15,12 @@ def passes_shadow_rays(graph: NodeGraph) -> bool:
     return any(map(_is_transparent, nodes)) and not (_distinguishes_shadow_rays(graph) and any(map(_refracts, nodes)))
 
 
+def bounds_volume_alone(graph: NodeGraph) -> bool:
+    """True for a surface without a shader, around a volume."""
+    root = graph.surface
+    return root is not None and 0 <= root.node < len(graph.nodes) and graph.nodes[root.node].kind == "volume_boundary"
+
+
 def asks_for_shadow_rays(graph: NodeGraph) -> bool:
     """True where what passes a surface depends on whether a shadow ray comes to it."""
     return passes_shadow_rays(graph) and _distinguishes_shadow_rays(graph)
