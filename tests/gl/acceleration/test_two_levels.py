@@ -41,6 +41,16 @@ def skewed() -> np.ndarray:
     return matrix
 
 
+def crowd_in_the_dark() -> Scene:
+    """The crowded room without its shining ball: instances that glow are chosen by a light tree of their own."""
+    scene = scenes.crowded_room(16, photons=2000)
+    glowing = next(number for number, made in enumerate(scene.materials) if made.name == "glow")
+    for instance in scene.instances:
+        if instance.materials == [glowing]:
+            instance.materials[:] = [0]
+    return scene
+
+
 def subsurface() -> Scene:
     scene = busy()
     wax = Lobe(LobeKind.PRINCIPLED, color=(0.8, 0.5, 0.3), subsurface_weight=1.0, subsurface_scale=0.1)
@@ -77,7 +87,7 @@ OTHERS = {
     "light linking": linked,
     "rigid motion": lambda: open_for(busy(), instances=[way(BALL, busy().instances[BALL].matrix, 0.5, 0.0, 0.2)]),
     "transparent": lambda: with_balls(skewed(), scenes.placed(-0.4, -0.1, -0.6, 0.5)),
-    "crowded": lambda: scenes.crowded_room(16, photons=2000),
+    "crowded": crowd_in_the_dark,
 }
 
 
