@@ -117,3 +117,12 @@ def crowded_room(size: int = 24, **settings: object) -> Scene:
     ]
     scene.lights.append(Light("sun", LightKind.SUN, looking((0, -3, 2), (0, 0, 0)), np.full(3, 0.5)))
     return scene
+
+
+def dull_crowded_room(size: int = 24, **settings: object) -> Scene:
+    """The crowded room without a shining ball: instances that glow share a light tree, and give other noise than
+    expanded ones."""
+    scene = crowded_room(size, **settings)
+    glow = [each.name for each in scene.materials].index("glow")
+    scene.materials[glow] = diffuse(0.2, 0.2, 0.2)
+    return scene

@@ -146,7 +146,7 @@ def glowing_fog(scattering: float, emission: float) -> NodeGraph:
 def crowd_in_fog(size: int, **settings: object) -> Scene:
     """The crowded room full of fog, with a ball of fog that shines, which photons begin in, and more of its other
     balls."""
-    scene = scenes.crowded_room(size, **settings)
+    scene = scenes.dull_crowded_room(size, **settings)
     scene.world.volume = glowing_fog(0.2, 0.0)
     scene.materials[-1].interior = glowing_fog(1.0, 2.0)
     scene.instances += [Instance(5, scenes.placed(0.2 * k, 0.3, 0.6, 0.08), [1]) for k in range(4)]

@@ -62,14 +62,6 @@ def linked() -> Scene:
     return scene
 
 
-def crowded() -> Scene:
-    """The crowded room, whose shining ball is dull: instances that glow share a light tree, and give other noise."""
-    scene = scenes.crowded_room(16, photons=2000)
-    glow = [mat.name for mat in scene.materials].index("glow")
-    scene.materials[glow] = scenes.diffuse(0.2, 0.2, 0.2)
-    return scene
-
-
 def shapeless() -> Scene:
     return with_balls(np.zeros((4, 4)), np.full((4, 4), np.nan), scenes.placed(0.1, 0.5, 0.1, 1e20))
 
@@ -85,7 +77,7 @@ OTHERS = {
     "light linking": linked,
     "rigid motion": lambda: open_for(busy(), instances=[way(BALL, busy().instances[BALL].matrix, 0.5, 0.0, 0.2)]),
     "transparent": lambda: with_balls(skewed(), scenes.placed(-0.4, -0.1, -0.6, 0.5)),
-    "crowded": crowded,
+    "crowded": lambda: scenes.dull_crowded_room(16, photons=2000),
 }
 
 
