@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import matplotlib.pyplot as plt
 
-from ..device.drawing import COLORS, STYLE
+from ..device.results.drawing import COLORS, STYLE
 from .lab import Driver, Outcome
 from .page import PAGE
 from .programs import Program
@@ -33,6 +33,6 @@ def draw(drivers: Sequence[Driver], programs: Sequence[Program], outcomes: Mappi
         axes.invert_yaxis()
         axes.grid(axis="y", visible=False)
         axes.set_xlabel("processor seconds, without any cache")
-        axes.legend(fontsize=7)
-        figure.savefig(FIGURE)
+        axes.legend(fontsize=7, loc="upper left", bbox_to_anchor=(0.0, -0.1))
+        figure.savefig(FIGURE, bbox_inches="tight")
         plt.close(figure)

@@ -83,7 +83,9 @@ def _keep(limits: Limits, drivers: list[Driver], programs: list[Program], outcom
     write_page(drivers, programs, outcomes)
     try:
         from .plot import FIGURE, draw
-    except ImportError:
+    except ModuleNotFoundError as error:
+        if error.name != "matplotlib":
+            raise
         print("drivers: the figure stays as it was: make bench-tools installs matplotlib", file=sys.stderr)
         return
     draw(drivers, programs, outcomes)
