@@ -54,6 +54,7 @@ def test_the_window_answers_while_it_renders(open_blender):
     idle = summary(viewport.step("gaps"))
     viewport.step("assign", path="scene.rppm.preview_samples", value=100000)
     viewport.step("free_view")
+    plain, _, _ = orbit(viewport)
     show_rendered(viewport)
     time.sleep(1.0)
     viewport.step("time_engine")
@@ -68,6 +69,7 @@ def test_the_window_answers_while_it_renders(open_blender):
     report(
         viewport,
         timer_gaps_idle=idle,
+        timer_gaps_orbiting_in_solid_mode=plain,
         timer_gaps_rendering=rendering,
         timer_gaps_orbiting=orbiting,
         pictures_a_second_at_rest=refinements,
@@ -76,8 +78,10 @@ def test_the_window_answers_while_it_renders(open_blender):
     )
     assert distinct_pictures(seen) >= 3
     assert min(seen["means"]) > 0.2 * np.median(seen["means"]), "a black flash"
-    # The aim is 50 ms at most on an idle machine; one that others use has gaps of its own.
-    assert rendering["p95"] < 50.0 + idle["p95"] and orbiting["p95"] < 150.0 + idle["p95"]
+    # The aim is 50 ms at most on an idle machine; one that others use has gaps of its own. While the view turns, what
+    # takes longest is a redraw of the window, which a slow machine draws as slowly in Solid mode.
+    assert rendering["p95"] < 50.0 + idle["p95"]
+    assert orbiting["p95"] < 100.0 + plain["p95"]
     assert calls["view_draw"]["p95"] < 20.0
     viewport.quit()
 
