@@ -13,10 +13,9 @@ layout(local_size_x = 64) in;
 #include "common/geometry.glsl"
 #include "common/active_paths.glsl"
 #include "common/path_depth.glsl"
+#include "direct_light/rest_of_ray.glsl"
 #include <CameraPath>
 #include <PassSurfaceParameters>
-
-const float NO_REACH = 1e-30;  // of a ray that is traced and meets nothing
 
 uniform Parameters { PassSurfaceParameters parameters; };
 readonly buffer Closures;
@@ -55,13 +54,6 @@ void main() {
     if (!(largest(transmittance) > 0.0)) return;
     // Closures' normals look back along the ray.
     vec3 normal = -unpack_unit_vector(closures[index].geometric_normal);
-    Ray beyond = Ray(closures[index].position + closures[index].ray_offset * normal, closures[index].triangle,
-                     ray.direction, INFINITY_DISTANCE);
-    if (ray.maximum_distance < INFINITY_DISTANCE) {
-        vec3 to_end = ray.origin + ray.maximum_distance * ray.direction - beyond.origin;
-        // A surface may lie nearer to the end than rays begin off it: there is nothing in between.
-        beyond.maximum_distance = max(dot(to_end, ray.direction), NO_REACH);
-        if (beyond.maximum_distance > NO_REACH) beyond.direction = normalize(to_end);
-    }
-    shadow_rays[index] = beyond;
+    vec3 origin = closures[index].position + closures[index].ray_offset * normal;
+    shadow_rays[index] = rest_of_ray(ray, origin, closures[index].triangle);
 }

@@ -4,17 +4,16 @@
 
 #include "common/iteration.glsl"
 #include "common/geometry.glsl"
+#include "direct_light/rest_of_ray.glsl"
+#include <VolumeSurfaces>
 readonly buffer Attributes;
 readonly buffer Media;
 buffer ShadowMedia;
 #include "materials/medium.glsl"
 #include HITS "media/one_level/hits.glsl"
 
-// Of boundaries behind one another, those up to here are passed.
-const int MOST_BOUNDARIES = 64;
 // Media that let less of a shadow ray pass than this between two surfaces end it by russian roulette.
 const float LEAST_PASSING = 0.1;
-const float NO_REACH = 1e-30;  // of a ray that is traced and meets nothing
 
 // How far a ray goes at most: farther on, the roulette ends it even by what is the same everywhere.
 float roulette_reach(vec3 extinction, float u) {
@@ -28,13 +27,7 @@ float survival(vec3 transmittance) { return min(largest(transmittance) / LEAST_P
 Ray ray_behind(Ray ray, Hit hit, vec3 v0, vec3 v1, vec3 v2, vec3 normal, bool leaves) {
     vec3 position = (1.0 - hit.b1 - hit.b2) * v0 + hit.b1 * v1 + hit.b2 * v2;
     float offset = ray_offset(normal, v0, v1, v2);
-    Ray rest = Ray(position + (leaves ? offset : -offset) * normal, hit.triangle, ray.direction, INFINITY_DISTANCE);
-    if (!(ray.maximum_distance < INFINITY_DISTANCE)) return rest;
-    vec3 to_end = ray.origin + ray.maximum_distance * ray.direction - rest.origin;
-    // A boundary may lie nearer to the end than rays begin off it: there is nothing in between.
-    rest.maximum_distance = max(dot(to_end, ray.direction), NO_REACH);
-    if (rest.maximum_distance > NO_REACH) rest.direction = normalize(to_end);
-    return rest;
+    return rest_of_ray(ray, position + (leaves ? offset : -offset) * normal, hit.triangle);
 }
 
 // The nearest hit of a path's shadow ray on what is no boundary. The ray then begins behind the last boundary, in the
@@ -44,7 +37,7 @@ Hit hit_behind_boundaries(uint index) {
     uint flags = shadow_media[index];
     vec3 weight = vec3(1.0);
     Hit hit;
-    for (int count = 0; count <= MOST_BOUNDARIES; ++count) {
+    for (int count = 0; count <= MOST_VOLUME_SURFACES; ++count) {
         float u = unit_float(pcg4d(uvec4(floatBitsToUint(ray.origin), iteration.seed + iteration.number)).x);
         float reach = ray.maximum_distance;
         vec3 extinction = even_extinction(flags);
@@ -57,7 +50,7 @@ Hit hit_behind_boundaries(uint index) {
         }
         ray.maximum_distance = reach;
         uint material = free ? 0u : material_of(hit.triangle);
-        if (free || media[material].bounds_volume == 0u || count == MOST_BOUNDARIES) {
+        if (free || media[material].bounds_volume == 0u || count == MOST_VOLUME_SURFACES) {
             weight /= survival(exp(-extinction * (free ? reach : hit.distance)));
             break;
         }

@@ -81,7 +81,7 @@ def test_the_window_answers_while_it_renders(open_blender):
     # The aim is 50 ms at most on an idle machine; one that others use has gaps of its own. While the view turns, what
     # takes longest is a redraw of the window, which a slow machine draws as slowly in Solid mode.
     assert rendering["p95"] < 50.0 + idle["p95"]
-    assert orbiting["p95"] < 100.0 + plain["p95"]
+    assert orbiting["p95"] < 50.0 + plain["p95"]
     assert calls["view_draw"]["p95"] < 20.0
     viewport.quit()
 

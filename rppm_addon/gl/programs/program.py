@@ -134,7 +134,7 @@ class ComputeProgram(Program):
         self._set_uniform = maker.set_uniform
         self._is_divisible = FIRST_INVOCATION in source.text
         self._lacks_threads = DRIVER_THREADS in source.text
-        """Whether the uniform DRIVER_THREADS is still to be set, which only a linked program can be given."""
+        """Flag that stays set until the program, once it is linked, is given the uniform DRIVER_THREADS."""
         self.local_size = source.local_size
         self._program = context.moderngl.compute_shader(_EMPTY_COMPUTE)
         self.before_dispatch = maker.begin(self._program.glo, source, links_later)

@@ -7,6 +7,7 @@ import moderngl
 
 from ...gl.buffer_sets import StorageBuffer
 from ...gl.buffers.buffers import GrowingBuffer
+from ...gl.buffers.constants import Constants
 from ...gl.buffers.records import Record
 from ...gl.buffers.storage_blocks import StorageBlock
 from ...gl.context.context import Context
@@ -49,8 +50,9 @@ _SURFACES_AT_ONCE = 16
 """Transparent surfaces between two readings of the number of shadow rays from a GPU, each of which waits for it."""
 
 
-_MOST_VOLUME_SURFACES = 32
+MOST_VOLUME_SURFACES = 64
 """Surfaces of volumes alone that a shadow ray passes at most, beside those that it counts as transparent."""
+Constants("VolumeSurfaces", signed=True, MOST_VOLUME_SURFACES=MOST_VOLUME_SURFACES)
 
 
 def _media_pixels(sizes: StageSizes) -> int:
@@ -225,7 +227,7 @@ class DirectLight(Stage):
             "Hits": hits.buffer,
             "Closures": closures,
         }
-        most = context.settings.transparent_max_bounces + (_MOST_VOLUME_SURFACES if self._media.size else 0)
+        most = context.settings.transparent_max_bounces + (MOST_VOLUME_SURFACES if self._media.size else 0)
         for surfaces in range(most + 1):
             if surfaces > 0 and surfaces % _SURFACES_AT_ONCE == 0 and passing.read_count() == 0:
                 return
